@@ -12,7 +12,7 @@ namespace dmise {
 
 struct SolveSettings {
   bool blind = false;  // uses neither the believed pointing nor the focal length
-  // Whether the whole sky is searched if the frame is not where RA and DEC without a WCS say.
+  // Whether the whole sky is searched if there is no solution near the header's RA and DEC.
   bool elsewhere = true;
   PlateSearch search;
 };

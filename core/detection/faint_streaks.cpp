@@ -251,8 +251,8 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     const Trail star = scene.star_trail(trail.x_px, trail.y_px);
     if (trail.length_px < chain_px && star_snr_on(frame, trail, star) > 1.2 * beamlet.snr) continue;
     // Where the light along parallel lines scatters more than noise, so must a streak.
-    const Beside around = beside(frame, turned, trail, band);
-    if (beamlet.snr < around.middle + candidate_snr * around.scatter) continue;
+    const ParallelLines around = parallel_lines(frame, turned, trail, band);
+    if (beamlet.snr < around.median + candidate_snr * around.scatter) continue;
     trail = climbed(frame, trail);
     tried.push_back(trail);
     const LineSum line = sum_along(frame, trail);
@@ -271,9 +271,9 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     const double per_px = line.sum / line.samples / FilteredFrame::steps;
     const float noise_e = std::sqrt(scene.pixel_around(trail.x_px, trail.y_px).variance_e2);
     trail.flux_e = per_px * noise_e * trail.length_px;
-    const Beside near = beside(frame, turned, trail, band);
+    const ParallelLines near = parallel_lines(frame, turned, trail, band);
     if (snr <
-        near.middle + least_streak_snr(trail.length_px) * near.scatter * crowding(frame, trail))
+        near.median + least_streak_snr(trail.length_px) * near.scatter * crowding(frame, trail))
       continue;
     const double star_snr = star_snr_on(frame, trail, star);
     if (snr * snr - star_snr * star_snr < settings.blend_margin) continue;

@@ -17,7 +17,7 @@ DMISE_INLINE I32 numbers() {
   return v;
 }
 
-/// The nearest step, as a column of parity `odd` tells the sign of 0.
+/// The nearest step; 0 becomes 1 in columns where `odd` is 1, else -1.
 DMISE_INLINE I32 rounded(F32 scaled, I32 odd) {
   scaled = max(min(scaled, splat(most)), splat(-most));
   const F32 half = scaled < 0.0f ? splat(-0.5f) : splat(0.5f);

@@ -258,8 +258,8 @@ BandSums LineBand::of(int reach) {
           .row = row.data()};
 }
 
-Beside beside(const FilteredFrame& frame, const TurnedFrame& turned, const Trail& trail,
-              LineBand& band) {
+ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turned,
+                             const Trail& trail, LineBand& band) {
   constexpr int least_lines = 12;
   constexpr int widest_step = 24;  // of lines that are summed together
   // On each side; what is beside a short line changes sooner.
@@ -299,9 +299,9 @@ Beside beside(const FilteredFrame& frame, const TurnedFrame& turned, const Trail
   }
   if (snr.size() < least_lines) return {};
   std::sort(snr.begin(), snr.end());
-  const double middle = snr[snr.size() / 2];
-  const double scatter = (snr[snr.size() * 9 / 10] - middle) / 1.2816;
-  return {std::max(middle, 0.0), scatter > 1.35 ? scatter : 1.0};  // so few lines show no less
+  const double median = snr[snr.size() / 2];
+  const double scatter = (snr[snr.size() * 9 / 10] - median) / 1.2816;
+  return {std::max(median, 0.0), scatter > 1.35 ? scatter : 1.0};  // so few lines show no less
 }
 
 }  // namespace dmise

@@ -45,11 +45,11 @@ struct LineBand {
 /// Lines parallel to a trail: the median of their SNRs, at least 0, and their scatter, at least 1.
 /// Where faint stars are dense or the sky is uneven, both exceed those of noise. The scatter is
 /// that of the upper half, because stars only add light.
-struct Beside {
-  double middle = 0.0, scatter = 1.0;
+struct ParallelLines {
+  double median = 0.0, scatter = 1.0;
 };
 
-Beside beside(const FilteredFrame& frame, const TurnedFrame& turned, const Trail& trail,
-              LineBand& band);
+ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turned,
+                             const Trail& trail, LineBand& band);
 
 }  // namespace dmise

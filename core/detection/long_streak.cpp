@@ -113,7 +113,7 @@ Line refined(const std::vector<Point>& points, const Line& line, double width_px
 }
 
 /// Extends the line beyond one end while light of about the same level continues, one window at a
-/// time, if asked for also across one window that may be dark by noise alone.
+/// time. `across_gaps`: also across one window, which may be dark by noise alone.
 void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level,
           bool across_gaps) {
   const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
@@ -148,7 +148,8 @@ void grow(const Scene& scene, const Line& line, Extent& extent, int way, double 
   }
 }
 
-/// Ends of the light: the cuts that best separate slices near `level` from slices near zero.
+/// Returns the ends of the light: the cuts that best separate slices near `level` from slices near
+/// zero.
 Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, double level) {
   const auto end = [&](int inside, int outside) {
     const int way = outside > inside ? 1 : -1;
@@ -173,7 +174,7 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
   return {end(middle, lit.from), end(middle, lit.to)};
 }
 
-/// Not worth a fit: faint, and hardly brighter than parallel lines beside it.
+/// Whether a line is faint and hardly brighter than parallel lines, so that a fit is not worth it.
 bool is_among_others(const Scene& scene, const Line& line, const Extent& extent, double level,
                      const DetectorSettings& settings) {
   const Slice middle = slice_at(scene, line, (extent.from + extent.to) / 2, 0.0);

@@ -23,7 +23,7 @@ struct Sum {
   double xx = 0.0, xd = 0.0, dd = 0.0, x = 0.0, d = 0.0;  // normal equations of the ellipticity
 };
 
-/// Adds what one star says, without its own parameters.
+/// Adds the equations of one star, from which its own parameters are eliminated.
 void add(const ShapeStar& star, const PsfField& field, Sum& sum) {
   const PixelPosition at{star.trail.x_px, star.trail.y_px};
   Psf gaussian = field.sigma_at(at);

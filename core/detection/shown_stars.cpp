@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr double fitted_snr = 10.0;  // of a star's light: of a fainter one no more is learnt
+constexpr double fitted_snr = 10.0;  // of a star's light: fainter ones are not fitted
 constexpr float fitted_noise = 0.5;  // light in a pixel [its noise] from which on it is fitted
 constexpr float neighbour_noise = 0.1;
 constexpr float model_error = 0.03F;  // of the Gaussian, in units of the light

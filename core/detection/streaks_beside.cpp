@@ -208,7 +208,7 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one,
   const double as_one =
       fit_trails(pixels, {one}, {unsigned(trail_bent_line)}, fit_settings).deviance;
   if (as_one - fit.deviance < least_gain) return {};
-  // What comes out is as sure as the noise alone.
+  // The final covariance is that of the noise alone.
   fit_settings.model_error = 0.0;
   fit = fit_trails(pixels, two, {free, free}, fit_settings);
   std::vector<Source> out;

@@ -117,8 +117,8 @@ class Problem {
     return out;
   }
 
-  /// The step from a state by its damped equations. A slope at its bound that would go beyond
-  /// stays.
+  /// Returns the step from a state by its damped equations. A slope at its bound that the step
+  /// would take beyond it is held.
   std::optional<SmallVector> step_from(const Linear& now, double damping) const {
     std::vector<std::size_t> held;
     while (true) {

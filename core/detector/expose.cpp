@@ -15,8 +15,8 @@ namespace {
 
 using DetectorChain = Chain<DetectorEffects>;
 
-constexpr std::size_t piece_px =
-    16384;  // 64 KB of electrons: stays in the cache through all effects
+// 64 KB of electrons, which stay in the cache through all effects.
+constexpr std::size_t piece_px = 16384;
 static_assert(piece_px % rng_group == 0);
 
 void check(const ExpectedElectronImage& light, const Exposure& exposure) {
