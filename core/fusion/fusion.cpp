@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "core/fusion/fusion_scene.h"

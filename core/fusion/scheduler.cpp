@@ -1,7 +1,6 @@
 #include "core/fusion/scheduler.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace dmise {
 namespace {

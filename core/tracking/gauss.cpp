@@ -1,6 +1,5 @@
 #include <unsupported/Eigen/Polynomials>
 
-#include "core/orbit/universal_kepler.h"
 #include "core/tracking/initial_orbit.h"
 #include "core/tracking/three_lines.h"
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/units.h"
+#include "core/orbit/two_body.h"
 
 namespace dmise {
 
@@ -161,7 +162,7 @@ Outcome<std::vector<LambertPath>> lambert(const Vec<Gcrs>& start_m, const Vec<Gc
   // 1 - chord / s without cancellation: s (s - chord) = r1 r2 cos^2(angle / 2).
   const double half = angle_rad(start_m, end_m) / 2;
   const double size = std::sqrt(r1 * r2) * std::fabs(std::cos(half)) / s;
-  const double unit_time = std::sqrt(s * s * s / (2 * settings.gm_m3_per_s2));
+  const double unit_time = std::sqrt(s * s * s / (2 * earth_gm_m3_per_s2));
   const double t = duration_s / unit_time;
   // The shorter way turns from the first to the second place by less than half a turn.
   const bool shorter = dot(across, settings.normal) >= 0;
@@ -170,7 +171,7 @@ Outcome<std::vector<LambertPath>> lambert(const Vec<Gcrs>& start_m, const Vec<Gc
 
   std::vector<LambertPath> out;
   const auto add = [&](double x, int turns, bool long_period) {
-    const double gamma = std::sqrt(settings.gm_m3_per_s2 * s / 2);
+    const double gamma = std::sqrt(earth_gm_m3_per_s2 * s / 2);
     const double rho = (r1 - r2) / chord, sigma = 2 * std::sqrt(r1 * r2) * std::sin(half) / chord;
     const double y = flight.y(x);
     const double radial = gamma * ((lambda * y - x) - rho * (lambda * y + x)) / r1;

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "core/frames/vec.h"
-#include "core/orbit/two_body.h"
 #include "core/tracking/outcome.h"
 
 namespace dmise {
@@ -17,7 +16,6 @@ struct LambertPath {
 struct LambertSettings {
   int most_turns = 0;         // >= 0
   Vec<Gcrs> normal{0, 0, 1};  // paths turn about it in the right-hand sense
-  double gm_m3_per_s2 = earth_gm_m3_per_s2;
 };
 
 /// All conics from `start_m` to `end_m` in `duration_s` > 0, with universal variables (Izzo 2015),
