@@ -18,6 +18,8 @@ void require_sense(const CardReader& v, const FrameHeader& h) {
   v.require(h.saturation_dn > 0, "SATURATE", "must be > 0");
   v.require(h.psf_fwhm_px > 0 && h.psf_fwhm_px <= 1e4, "PSFFWHM", "must be in (0, 1e4]");
   v.require(h.focal_length_px > 0, "FOCALPX", "must be > 0");
+  const double row_time_us = h.detector ? h.detector->row_time_us : 0.0;
+  v.require(row_time_us >= 0 && row_time_us <= 1e5, "ROWTIME", "must be in [0, 1e5]");
   if (h.site) {
     v.require(norm(h.sensor_position_m) > 0, "SENPOSX",
               "the sensor must not be the Earth's centre");

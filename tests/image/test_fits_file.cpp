@@ -251,6 +251,16 @@ TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
             "frame.fits: BITPIX: must be 16, got -32");
 }
 
+// Times of rows are whole nanoseconds of 64 bits.
+TEST(FitsFile, RefusesARowTimeWithoutBound) {
+  FrameHeader header = sample_header();
+  header.detector->row_time_us = 20;
+  const std::string bytes = encoded(sample_counts(), header);
+  EXPECT_EQ(decode_frame(bytes, "frame.fits").header, as_in_file(header));
+  EXPECT_EQ(error_of(with_card(bytes, "ROWTIME", "ROWTIME = 1E300")),
+            "frame.fits: ROWTIME: must be in [0, 1e5], got 1E300");
+}
+
 // CFITSIO divides by the sizes of tiles and blocks while it opens a compressed image, and makes
 // whole numbers of texts and fractions.
 TEST(FitsFile, RefusesTilesAndBlocksOfNoSize) {
