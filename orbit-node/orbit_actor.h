@@ -12,8 +12,8 @@
 
 namespace dmise {
 
-/// Publishes the roster of a scenario and, unless nobody takes them, the states of all its objects
-/// at every tick, in GCRS.
+/// Publishes the roster of a scenario and, if anybody takes them, the states of all its objects at
+/// every tick, in GCRS.
 class OrbitActor : public Actor {
  public:
   OrbitActor(const Scenario& scenario, const Clock& clock, Threads& threads);
@@ -26,8 +26,8 @@ class OrbitActor : public Actor {
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }
 
-  /// Calls `report` with one line for each object without a state, at the first such tick; from the
-  /// thread that calls `step`. Without states to publish, ticks are a minute apart for this.
+  /// Calls `tell` with one line for each object without a state, at the first such tick; from the
+  /// thread that calls `step`. An actor that publishes no states checks one tick a minute.
   void on_absence(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
   const std::vector<std::string>& notes() const { return population_.notes; }

@@ -65,9 +65,9 @@ class Coordinator {
     std::vector<std::string> waits_for;  // of an agent: its nodes that it waits for
 
     bool active() const { return !left; }
-    /// It may come, go and fall silent without consequences for the run.
+    /// Whether it may join, leave and fall silent without consequences for the run.
     bool is_guest() const { return observer || idle; }
-    /// Nobody waits for it up to and including this tick.
+    /// Last tick up to which nobody waits for it.
     Tick reaches() const { return node.schedule.next_after(done) - 1; }
   };
 

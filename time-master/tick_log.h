@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-/// What became of a tick; times are seconds since the first grant.
+/// Times of a tick, in seconds since the first grant.
 struct TickRecord {
   Tick tick = 0;
   double granted_s = 0.0, settled_s = 0.0;  // when it might be processed, and when all had done it

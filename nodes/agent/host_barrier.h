@@ -13,9 +13,9 @@
 
 namespace dmise {
 
-/// State of a host's nodes as a state machine without sockets: who is present and alive, and which
-/// tick all of them have done. It decides nothing: the Coordinator decides what a lost node means,
-/// who may join and what is granted. `model/lockstep_host.pml` is its model.
+/// State of a host's nodes as a state machine without sockets: which are present and alive, and
+/// which tick all of them have done. The Coordinator decides what a lost node means, who may join
+/// and what is granted. `time-master/model/lockstep_host.pml` is its model.
 class HostBarrier {
  public:
   struct Node {
@@ -28,7 +28,7 @@ class HostBarrier {
     std::deque<TickTally> manifests;  // of ticks that may be repeated
     Pulse pulse;
 
-    /// Nobody waits for it up to and including this tick.
+    /// Last tick up to which nobody waits for it.
     Tick reaches() const { return schedule.next_after(done) - 1; }
   };
   /// A report to the master.
@@ -63,7 +63,7 @@ class HostBarrier {
   void fail(const std::string& name, const std::string& reason);
   /// The agent was suspended between `since` and `now` and could not receive anything.
   void excuse(Instant since, Instant now);
-  /// It was lost before the start: as if it had never joined.
+  /// Removes a node that was lost before the start, as if it had never joined.
   void forget(const std::string& name) { nodes_.erase(name); }
   /// Finds nodes that have been silent or without progress for too long.
   void check(Instant now);

@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-/// Publishes what all sensors share (Sun, Moon, the Earth's motion and orientation) and the
-/// atmosphere above each ground sensor; each at its own rate, starting at tick 0.
+/// Publishes what all sensors share (Sun, Moon, the Earth's motion and orientation), and the
+/// atmosphere above each ground sensor. Each has its own rate, starting at tick 0.
 class EnvironmentActor : public Actor {
  public:
   EnvironmentActor(const Scenario& scenario, Clock clock);

@@ -77,7 +77,7 @@ std::vector<std::string> FusionEvaluator::consumes() const {
   return topics;
 }
 
-void FusionEvaluator::meet(const ObjectRoster& roster) {
+void FusionEvaluator::start_with(const ObjectRoster& roster) {
   const FusionConfig& config = *scenario_.fusion;
   for (std::size_t k = 0; k < config.not_in_catalogue.size(); ++k) {
     const std::string& name = config.not_in_catalogue[k];
@@ -104,7 +104,7 @@ FusionEvaluator::Found FusionEvaluator::fuse(Tick tick, std::span<const Message>
       exposures;
   for (const Message& message : inputs) {
     if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
-      if (!fusion_) meet(*roster);
+      if (!fusion_) start_with(*roster);
     if (const auto* report = std::get_if<FrameReport>(message.state.get()))
       exposures[{report->sensor, report->frame}].first = report;
     if (const auto* set = std::get_if<DetectionSet>(message.state.get()))
@@ -113,7 +113,7 @@ FusionEvaluator::Found FusionEvaluator::fuse(Tick tick, std::span<const Message>
   std::vector<SensorFrame> frames;
   for (const auto& [key, exposure] : exposures) {
     const auto& [report, set] = exposure;
-    if (!report || !set) continue;  // a lost one
+    if (!report || !set) continue;  // one of them was lost
     const Camera& camera = cameras_.at(key.first);
     frames.push_back(
         sensor_frame(*report, set->detections, camera.columns, camera.rows, camera.half_angle_rad));
@@ -164,7 +164,7 @@ std::vector<Message> FusionEvaluator::step(Tick tick, std::span<const Message> i
     journal_.clear();
     open_files(0);
   }
-  // A process that goes on hears the roster again; the journal has it.
+  // A process that continues a run receives the roster again; the journal has it already.
   std::vector<Message> fresh;
   for (const Message& message : inputs)
     if (!fusion_ || !std::holds_alternative<ObjectRoster>(*message.state)) fresh.push_back(message);

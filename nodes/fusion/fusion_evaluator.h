@@ -15,13 +15,13 @@
 
 namespace dmise {
 
-/// A sensor as the scheduler knows it, away from where its camera closes the shutter; nothing of
-/// one that is not cued.
+/// Returns a sensor as the scheduler needs it, with the angles within which its camera closes the
+/// shutter; empty if the sensor is not cued.
 std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor);
 
 /// Makes tracks of the detections of all sensors: publishes those that changed at a tick and writes
-/// them to tracks.jsonl in the directory of the run. Gives sensors that are cued their tasks, which
-/// are in tasks.jsonl, too.
+/// them to tracks.jsonl in the directory of the run. Gives tasks to sensors that are cued, and
+/// writes them to tasks.jsonl.
 class FusionEvaluator : public Evaluator {
  public:
   /// The scenario must have `fusion`. Throws `Error` if `directory` cannot be written.
@@ -31,10 +31,10 @@ class FusionEvaluator : public Evaluator {
   std::vector<std::string> produces() const override;
   /// The roster, and frames and detections of each sensor that detects.
   std::vector<std::string> consumes() const override;
-  /// A sensor that is lost is one that sees nothing.
+  /// A lost sensor counts as one that sees nothing.
   bool needs(const std::string& topic) const override { return topic == roster_topic; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
-  /// Does the ticks before again, by the journal.
+  /// Repeats the earlier ticks from the journal.
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return progress_; }
 
@@ -43,8 +43,9 @@ class FusionEvaluator : public Evaluator {
     int columns = 0, rows = 0;
     double half_angle_rad = 0.0;
   };
-  /// Throws `ConfigError` for an object of `not_in_catalogue` that the roster does not have.
-  void meet(const ObjectRoster& roster);
+  /// Starts the fusion with the catalogue of the roster. Throws `ConfigError` for an object of
+  /// `not_in_catalogue` that the roster does not have.
+  void start_with(const ObjectRoster& roster);
   struct Found {
     TrackSet tracks;
     std::vector<Task> tasks;
@@ -67,7 +68,7 @@ class FusionEvaluator : public Evaluator {
   std::atomic<std::uint64_t> progress_{0};
 };
 
-/// In the directory of a run.
+/// Returns the path of the journal of a run.
 std::string fusion_journal_path(const std::string& directory);
 
 }  // namespace dmise

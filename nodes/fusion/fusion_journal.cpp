@@ -15,7 +15,7 @@
 namespace dmise {
 namespace {
 
-/// Before each record; its texts follow. Of one host: integers have its byte order.
+/// Before the texts of each record. A journal stays on its host: integers have its byte order.
 struct Head {
   std::int64_t tick = 0;
   std::uint32_t kind = 0;                            // of the message; 0: the tick ends
@@ -35,7 +35,7 @@ struct Record {
   }
 };
 
-/// The next record; false at the end or at one that is not whole.
+/// Reads the next record; false at the end or at an incomplete one.
 bool read(std::ifstream& file, Record& record) {
   if (!file.read(reinterpret_cast<char*>(&record.head), sizeof record.head)) return false;
   const Head& h = record.head;
@@ -99,11 +99,11 @@ void FusionJournal::resume(Tick tick,
     }
   }
   if (next < tick)
-    fail("has the inputs before tick " + std::to_string(next) + " alone, and the run goes on at " +
-         std::to_string(tick) + ": start it anew");
+    fail("ends before tick " + std::to_string(next) + ", and the run continues at " +
+         std::to_string(tick) + ": start the run from its beginning");
   open("ab");
   if (::truncate(path_.c_str(), off_t(whole)) != 0)
-    fail(std::string("can't be cut: ") + std::strerror(errno));
+    fail(std::string("can't be truncated: ") + std::strerror(errno));
 }
 
 void FusionJournal::add(std::span<const Message> inputs) {

@@ -8,9 +8,9 @@
 
 namespace dmise {
 
-/// The inputs of a fusion node tick by tick, so that a process that goes on with a run does the
-/// earlier ticks again. Each message has its check sum; a tick counts once its end is written.
-/// Methods throw `Error` "PATH: reason".
+/// The inputs of a fusion node tick by tick, so that a process that continues a run can repeat the
+/// earlier ticks. Each message has a checksum; a tick counts when its end is written. Methods throw
+/// `Error` "PATH: reason".
 class FusionJournal {
  public:
   explicit FusionJournal(std::string path) : path_(std::move(path)) {}
@@ -18,16 +18,16 @@ class FusionJournal {
   FusionJournal(const FusionJournal&) = delete;
   FusionJournal& operator=(const FusionJournal&) = delete;
 
-  /// Begins anew.
+  /// Starts an empty journal.
   void clear();
-  /// Calls `again` for each tick before `tick` and goes on behind them. Throws `Error` if the
-  /// journal does not reach so far.
+  /// Calls `again` for each tick before `tick`, and writes after them from then on. Throws `Error`
+  /// if the journal ends before.
   void resume(Tick tick, const std::function<void(Tick, std::span<const Message>)>& again);
   void add(std::span<const Message> inputs);
-  /// Everything of the tick is written.
+  /// Writes the end of a tick.
   void end(Tick tick);
 
-  /// The first tick that a journal does not have.
+  /// Returns the first tick that a journal does not have.
   static Tick ticks_written(const std::string& path);
 
  private:

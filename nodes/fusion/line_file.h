@@ -6,11 +6,12 @@
 
 namespace dmise {
 
-/// A file of JSON lines, in the order of a time that each has, to which lines are added. Methods
-/// throw `Error` "PATH: reason".
+/// A file of JSON lines in the order of a time that each line has. Methods throw `Error` "PATH:
+/// reason".
 class LineFile {
  public:
-  /// Keeps the lines with a time before `from`; `key`: of the time, in nanoseconds.
+  /// Opens the file to append lines, and keeps those with a time before `from`. `key`: of the time,
+  /// in nanoseconds.
   LineFile(std::string path, const std::string& key, SimTime from);
   ~LineFile();
   LineFile(const LineFile&) = delete;

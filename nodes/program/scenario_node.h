@@ -18,8 +18,8 @@ struct ScenarioNode {
   };
 
   const char* name;             // its row in node_kinds(); the program is dmise-NAME
-  const char* what;             // it does, for --help
-  const char* needs = nullptr;  // key without which a scenario has no such node
+  const char* what;             // what it does, for --help
+  const char* needs = nullptr;  // key that a scenario with such a node has
   bool uses_threads = false;
   /// Throws ConfigError for a scenario that the node cannot run. With --check it is called only if
   /// the node writes no products.

@@ -10,7 +10,7 @@ namespace {
 
 TEST(ControlRules, ANameIsALineOfText) {
   v1::NodeMessage message;
-  EXPECT_TRUE(fault_of(message));  // says nothing
+  EXPECT_TRUE(fault_of(message));  // has no body
   message.mutable_join()->set_name("alpha");
   message.mutable_join()->add_produces("detection/alpha");
   EXPECT_FALSE(fault_of(message));

@@ -19,7 +19,7 @@ constexpr milliseconds look_interval{20};  // between checks of connections, whi
 constexpr milliseconds idle{1000};
 constexpr int requests_at_once = 256;
 constexpr std::size_t remembered_readers = 2 * FrameServer::most_readers;
-constexpr int unread_ms = 30'000;  // after which who does not read is disconnected by the system
+constexpr int unread_ms = 30'000;  // after which the system disconnects a reader that reads nothing
 
 /// Keeps the bytes of an answer until ZeroMQ has sent them.
 struct UnderWay {
@@ -125,13 +125,13 @@ void FrameServer::answer_requests() {
     }
     reader.waits = false;
     send(peer, *answer);
-    // Who knows that it is over is waited for no longer.
+    // `finish` does not wait for a reader that knows that the frames are over.
     at = answer->head.status() == v1::FrameAnswer::STATUS_OVER ? readers_.erase(at) : std::next(at);
   }
 }
 
 void FrameServer::send(const std::string& peer, const KeptFrames::Answer& answer) {
-  // To a reader that has left an answer unread ZeroMQ sends nothing, and says nothing of it.
+  // ZeroMQ silently drops an answer to a reader that has not read those before.
   const bool sent = answer.head.status() == v1::FrameAnswer::STATUS_SENT;
   socket_.send(zmq::buffer(peer), zmq::send_flags::sndmore);
   socket_.send(to_frame(answer.head), sent ? zmq::send_flags::sndmore : zmq::send_flags::none);

@@ -13,8 +13,8 @@
 namespace dmise {
 
 /// The frame endpoint of a sensor: a thread that answers requests for frames (docs/wire.md,
-/// Frames). A reader gets one answer for each request, so that nothing accumulates for one that
-/// does not read; the sensor waits for nobody.
+/// Frames). A reader gets one answer for each request, so that nothing accumulates for a reader
+/// that does not read. The sensor waits for no reader.
 class FrameServer {
  public:
   static constexpr int most_readers = 64;  // connections; beyond, the oldest are closed
@@ -31,8 +31,8 @@ class FrameServer {
   FrameServer(const FrameServer&) = delete;
   FrameServer& operator=(const FrameServer&) = delete;
 
-  /// The sensor makes no more frames: returns when all readers know, when none has asked for
-  /// `quiet`, or after five times that.
+  /// The sensor makes no more frames: returns when all readers know, when no request has arrived
+  /// for `quiet`, or after five times that.
   void finish(std::chrono::nanoseconds quiet);
 
  private:

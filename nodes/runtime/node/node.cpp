@@ -25,10 +25,10 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds probe_interval{10};  // at first; twice as long each time
-constexpr milliseconds longest_probe_interval{
-    320};  // so that probes of hundreds leave time to start
+// So that the probes of hundreds of nodes leave time to start.
+constexpr milliseconds longest_probe_interval{320};
 constexpr milliseconds idle{1000};
-constexpr milliseconds last_answers{1000};  // that readers of frames may wait before they ask
+constexpr milliseconds last_answers{1000};  // longest pause of a reader before its last request
 constexpr milliseconds look_interval{100};  // between checks of connection limits
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }

@@ -19,7 +19,7 @@ struct NodeOptions {
   std::string name;              // in the run; default: the participant's
   bool observer = false;         // joins and leaves at any time; the clock does not wait for it
   int lose_every = 0;            // > 0, for tests: drops every n-th message for this node
-  KeptFrames* frames = nullptr;  // served to whoever asks, if there are any
+  KeptFrames* frames = nullptr;  // served to readers; null: none
   Event* stop = nullptr;         // makes the node leave; see stop_signal()
 };
 

@@ -14,10 +14,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds gap_patience{20};          // for messages known to be published
-constexpr milliseconds gap_patience_limit{4000};  // doubled whenever they were only late
-constexpr milliseconds quiet_patience{
-    500};  // for topics of unknown state: the producer may be slow
+constexpr milliseconds gap_patience{20};            // for messages known to be published
+constexpr milliseconds gap_patience_limit{4000};    // doubled whenever they were only late
+constexpr milliseconds quiet_patience{500};         // for others: their publisher may be slow
 constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
 

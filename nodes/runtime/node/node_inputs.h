@@ -36,7 +36,7 @@ class NodeInputs {
   /// Requests messages that keep `tick` from being complete, if it is time to. Returns the longest
   /// time to wait for an answer.
   std::chrono::nanoseconds ask_for(Tick tick);
-  /// Resets patience, for the next tick.
+  /// Starts to wait for the next tick.
   void reset_patience();
 
   bool probed() const { return inbox_.probed(); }
@@ -93,8 +93,8 @@ class NodeInputs {
   std::chrono::nanoseconds quiet_{0};
   std::chrono::nanoseconds gap_{0};
   std::chrono::nanoseconds again_{0};  // least patience after a request at this tick
-  std::optional<std::uint64_t>
-      duplicates_when_asked_;  // at a request for a gap; no duplicates since
+  // At a request for a gap, if there were no duplicates since.
+  std::optional<std::uint64_t> duplicates_when_asked_;
   std::uint64_t asked_again_ = 0;
   std::uint64_t asked_for_known_ = 0;
   int lose_every_ = 0;

@@ -7,7 +7,7 @@
 #include "nodes/runtime/observability/figures.h"
 #include "nodes/runtime/observability/status.h"
 
-// Counters as families of metrics. Names follow Prometheus's conventions: base units at the end of
+// Values as families of metrics. Names follow Prometheus's conventions: base units at the end of
 // the name, and _total for counters. docs/operations.md lists them.
 namespace dmise {
 

@@ -10,7 +10,7 @@ namespace dmise {
 
 class MetricsServer;
 
-/// What a process tells of itself; the state of the run is told by the time-master.
+/// Values of a process. `RunStatus`, the state of the run, is set by the time-master.
 using Figures = std::variant<NodeFigures, FrameFigures, BrokerFigures, RunStatus>;
 
 struct MetricsAddress {

@@ -4,8 +4,7 @@
 
 namespace dmise {
 
-// Scripts by which shells complete commands and options of a program, made from its tables. Where a
-// word is neither, names of files are offered.
+// Scripts for shells that complete commands and options of a program, and names of files elsewhere.
 std::string bash_completion(const CLI::App& app);
 std::string zsh_completion(const CLI::App& app);
 

@@ -153,7 +153,7 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
                         is_duration(message.control().factor(), max_pace_factor),
                     "control: invalid tick or factor");
     case v1::NodeMessage::BODY_NOT_SET:
-      return "says nothing";
+      return "has no body";
     default:
       return std::nullopt;
   }
@@ -174,7 +174,7 @@ std::optional<std::string> fault_of(const v1::MasterMessage& message) {
     case v1::MasterMessage::kGrant:
       return fault_of(message.grant());
     case v1::MasterMessage::BODY_NOT_SET:
-      return "says nothing";
+      return "has no body";
     default:
       return std::nullopt;
   }

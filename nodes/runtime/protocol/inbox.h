@@ -35,13 +35,13 @@ class Inbox {
 
   explicit Inbox(std::vector<std::string> topics);
 
-  /// What is published on `topic` at tick k is needed, and taken, at k + `delay`, >= 1. Call before
-  /// `begin_at`; `reaches_back`: ticks of it that are needed before the one at which the run goes
-  /// on.
+  /// What is published on `topic` at tick k is needed, and taken, at k + `delay`, >= 1.
+  /// `reaches_back`: its ticks that are needed before the one at which the run continues. Call
+  /// before `begin_at`.
   void set_delay(const std::string& topic, Tick delay, Tick reaches_back);
   /// Call first: ticks before `tick` are not needed, but retained messages are. With `catch_up`
-  /// nothing counts before a POSITION has given each topic's sequence number. `resumes_at`: where
-  /// the run goes on, at or after `tick`.
+  /// nothing counts before a POSITION has given each topic's sequence number. `resumes_at`: tick at
+  /// which the run continues, at or after `tick`.
   void begin_at(Tick tick, Tick resumes_at, bool catch_up);
   /// First tick of a topic that is needed.
   Tick begins_at(const std::string& topic) const;

@@ -19,25 +19,24 @@ struct FrameBytes {
   std::string_view bytes;
 };
 
-/// The last frames that a sensor made, for those who ask for their pixels. The sensor's thread
-/// adds, another one answers: who asks never keeps the sensor waiting.
+/// The last frames of a sensor, for readers that request their pixels. The sensor's thread adds
+/// frames and another thread answers, so that the sensor never waits for a reader.
 class KeptFrames {
  public:
   static constexpr std::size_t most_frames = 128;
   static constexpr std::size_t most_bytes = std::size_t(64) << 20;  // in memory; one frame at least
 
-  /// `changed` is called when a frame is added or the frames are over, from the thread that does
-  /// it.
   explicit KeptFrames(std::string sensor) : sensor_(std::move(sensor)) {}
+  /// `changed` is called when a frame is added and by `end`, from the thread that does it.
   void when_changed(std::function<void()> changed);
 
-  /// Adds a frame, later than all before. `load` gives its file when it is asked for, and throws
-  /// `Error` if it can't; empty: the frame is counted alone. `held_bytes`: in memory for it.
+  /// Adds a frame, later than all before. `load` returns its file when it is requested, or throws
+  /// `Error`; empty: the frame is only counted. `held_bytes`: memory that `load` holds.
   void add(const FrameReport& report, std::function<FrameBytes()> load, std::size_t held_bytes = 0);
   /// No more frames are added.
   void end();
 
-  /// Whether somebody is there to ask. What is kept in memory alone needs to be kept only then.
+  /// Whether readers are connected. Frames that are not in files need to be kept only then.
   bool wanted() const;
   void set_wanted(bool wanted);
 
@@ -45,7 +44,7 @@ class KeptFrames {
     v1::FrameAnswer head;
     FrameBytes fits;  // empty unless STATUS_SENT
   };
-  /// Empty: what is asked for is yet to come. `run_id` goes into the answer.
+  /// Returns nothing while the requested frame is yet to come. `run_id` goes into the answer.
   std::optional<Answer> answer(const v1::FrameRequest& request, std::uint64_t run_id) const;
 
  private:

@@ -25,7 +25,7 @@ class Outbox {
   /// Sets the number of ticks to keep from now on. Call before the first `pack`.
   void keep(Tick ticks) { keep_ticks_ = ticks; }
 
-  /// Nothing is said on `topic` at other ticks. Call before the first `pack`.
+  /// Nothing is published on `topic` at other ticks. Call before the first `pack`.
   void set_schedule(const std::string& topic, Schedule schedule) { schedules_[topic] = schedule; }
 
   std::vector<SharedFrames> probes() const;

@@ -12,9 +12,9 @@ class TopicOwners {
  public:
   /// Returns why `join` cannot publish its topics; empty if it can.
   std::optional<std::string> fault_of(const v1::Join& join) const;
-  /// It has joined: its topics are its own.
+  /// Records the topics of a process that has joined.
   void add(const v1::Join& join);
-  /// It has left before the start: others may publish its topics.
+  /// Releases the topics of a process that has left before the start.
   void remove(const std::string& node);
   /// Removes from `done`, received over the connection of `member`, topics that belong neither to
   /// it nor to a node behind that agent. False if there were any.

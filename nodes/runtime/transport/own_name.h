@@ -5,8 +5,8 @@
 
 #include "dmise/v1/node.pb.h"
 
-// Authorisation of names with keys: a sender may use the name of its key, and an agent the names of
-// nodes granted to its key.
+// Names that a sender may use, with keys: that of its key, and an agent those of nodes granted to
+// its key.
 namespace dmise {
 
 /// Returns why the sender of `message` may not send it; empty if it may. `frame`: the message as
