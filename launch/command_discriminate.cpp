@@ -98,17 +98,17 @@ std::string text_of_run(const DiscriminateOptions& options,
                         const std::vector<Material>& materials) {
   Threads threads(options.threads);
   Progress progress;
-  const RunSpectra spectra =
-      measure_run(options.run, options.sensors, options.aperture, threads,
-                  [&](double share, const std::string& file) {
-                    progress.show_share(share, "discriminate: " + printable(file));
-                  });
+  RunSpectra spectra = measure_run(options.run, options.sensors, options.aperture, threads,
+                                   [&](double share, const std::string& file) {
+                                     progress.show_share(share, "discriminate: " + printable(file));
+                                   });
   progress.clear_line();
   std::vector<Band> bands;
   for (const SpectralSensor& s : spectra.sensors) bands.push_back(s.band);
   std::vector<MaterialSignature> signatures;
   for (const Material& m : materials) signatures.push_back(signature_of(m, bands));
-  const RunDiscrimination result = discriminate(spectra, signatures, known_of(options.known));
+  const RunDiscrimination result =
+      discriminate(std::move(spectra), signatures, known_of(options.known));
   return options.json ? discrimination_json(result) : discrimination_table(result);
 }
 

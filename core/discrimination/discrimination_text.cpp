@@ -59,19 +59,16 @@ ChartAxis logarithmic_axis(const char* label, double least, double most) {
 
 }  // namespace
 
-RunDiscrimination discriminate(const RunSpectra& spectra,
-                               const std::vector<MaterialSignature>& materials,
+RunDiscrimination discriminate(RunSpectra given, const std::vector<MaterialSignature>& materials,
                                const std::map<std::string, std::string>& known) {
   std::vector<std::string> names;
   for (const auto& m : materials) names.push_back(m.name);
   for (const auto& [object, material] : known)
     if (std::find(names.begin(), names.end(), material) == names.end())
       throw Error(object + ": no such material among those compared: " + material);
-  RunDiscrimination run{.sensors = spectra.sensors,
-                        .materials = materials,
-                        .samples = spectra.samples,
-                        .left_out = spectra.left_out,
-                        .confusion = ConfusionMatrix(names)};
+  RunDiscrimination run{
+      .spectra = std::move(given), .materials = materials, .confusion = ConfusionMatrix(names)};
+  const RunSpectra& spectra = run.spectra;
   const std::size_t bands = spectra.sensors.size();
   for (const std::string& name : objects_of(spectra)) {
     ObjectSignature object{.object = name,
@@ -114,10 +111,11 @@ RunDiscrimination discriminate(const RunSpectra& spectra,
 
 std::string discrimination_table(const RunDiscrimination& run) {
   std::string text;
-  for (std::size_t i = 1; i < run.sensors.size(); ++i) {
+  for (std::size_t i = 1; i < run.spectra.sensors.size(); ++i) {
     add(text, "reflectance in %s over that in %s (%.4g over %.4g um)\n",
-        printable(run.sensors[i].band.name).c_str(), printable(run.sensors[0].band.name).c_str(),
-        run.sensors[i].band.centre_m * 1e6, run.sensors[0].band.centre_m * 1e6);
+        printable(run.spectra.sensors[i].band.name).c_str(),
+        printable(run.spectra.sensors[0].band.name).c_str(),
+        run.spectra.sensors[i].band.centre_m * 1e6, run.spectra.sensors[0].band.centre_m * 1e6);
     add(text, "%-24s %8s %18s %10s %10s  %s\n", "object", "samples", "ratio of all", "scatter",
         "expected", "material (probability)");
     for (const ObjectSignature& o : run.objects) {
@@ -146,16 +144,16 @@ std::string discrimination_table(const RunDiscrimination& run) {
     }
     add(text, "right: %.4f\n", run.confusion.accuracy());
   }
-  if (!run.left_out.empty())
-    add(text, "left out: %zu, the first: %s\n", run.left_out.size(),
-        printable(run.left_out[0]).c_str());
+  if (!run.spectra.left_out.empty())
+    add(text, "left out: %zu, the first: %s\n", run.spectra.left_out.size(),
+        printable(run.spectra.left_out[0]).c_str());
   return text;
 }
 
 std::string discrimination_json(const RunDiscrimination& run) {
   JsonWriter json;
   json.begin_object().key("bands").begin_array();
-  for (const SpectralSensor& s : run.sensors) {
+  for (const SpectralSensor& s : run.spectra.sensors) {
     json.begin_object().field("sensor", s.name).field("band", s.band.name);
     json.field("centre_m", s.band.centre_m).field("width_m", s.band.width_m);
     json.field("aperture_fraction", s.aperture_fraction).end_object();
@@ -187,7 +185,7 @@ std::string discrimination_json(const RunDiscrimination& run) {
     json.end_array().end_object();
   }
   json.end_array().key("samples").begin_array();
-  for (const SpectralSample& s : run.samples) {
+  for (const SpectralSample& s : run.spectra.samples) {
     json.begin_object()
         .field("object", s.object)
         .field("frame", s.frame)
@@ -210,7 +208,7 @@ std::string discrimination_json(const RunDiscrimination& run) {
     json.end_object();
   }
   json.end_object().key("left_out").begin_array();
-  for (const auto& line : run.left_out) json.value(line);
+  for (const auto& line : run.spectra.left_out) json.value(line);
   return json.end_array().end_object().take() + "\n";
 }
 

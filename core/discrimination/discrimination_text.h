@@ -25,17 +25,14 @@ struct ObjectSignature {
 /// where `known` (object to material) says what it is. Samples without light in the first band have
 /// no ratio.
 struct RunDiscrimination {
-  std::vector<SpectralSensor> sensors;
+  RunSpectra spectra;
   std::vector<MaterialSignature> materials;
   std::vector<ObjectSignature> objects;
-  std::vector<SpectralSample> samples;
-  std::vector<std::string> left_out;
   ConfusionMatrix confusion;
 };
 
 /// Throws `Error` for a known material that is not among `materials`.
-RunDiscrimination discriminate(const RunSpectra& spectra,
-                               const std::vector<MaterialSignature>& materials,
+RunDiscrimination discriminate(RunSpectra spectra, const std::vector<MaterialSignature>& materials,
                                const std::map<std::string, std::string>& known);
 
 std::string discrimination_table(const RunDiscrimination& run);
