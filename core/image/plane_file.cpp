@@ -1,7 +1,8 @@
 #include "core/image/plane_file.h"
 
+#include <algorithm>
 #include <cmath>
-#include <span>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
@@ -11,15 +12,11 @@
 namespace dmise {
 namespace {
 
-std::size_t pixel_count(const Plane& plane) {
-  return std::size_t(plane.columns) * std::size_t(plane.rows);
-}
-
 std::vector<std::string> plane_cards(const Plane& plane, const FrameHeader& header) {
-  for (std::size_t i = 0; i < pixel_count(plane); ++i)
-    if (!std::isfinite(plane.pixels[i]))
-      throw Error("FITS can't be written: " + plane.name + ": not a finite number at pixel " +
-                  std::to_string(i));
+  const auto bad = std::ranges::find_if_not(plane.pixels, [](float v) { return std::isfinite(v); });
+  if (bad != plane.pixels.end())
+    throw Error("FITS can't be written: " + plane.name + ": not a finite number at pixel " +
+                std::to_string(bad - plane.pixels.begin()));
   auto cards = fits_cards(header);
   cards.insert(cards.begin(), {text_card("EXTNAME", plane.name, plane.what),
                                text_card("BUNIT", plane.unit, "unit of the pixels")});
@@ -36,8 +33,8 @@ void write_plane(const std::string& path, const Plane& plane, const FrameHeader&
     throw Error(path + ": " + error.what());
   }
   WholeFile file(path);
-  put_image([&](std::string_view piece) { file.append(piece); }, FitsPlace::primary,
-            std::span(plane.pixels, pixel_count(plane)), plane.columns, cards);
+  put_image([&](std::string_view piece) { file.append(piece); }, FitsPlace::primary, plane.pixels,
+            plane.columns, cards);
   file.finish();
 }
 

@@ -1,7 +1,7 @@
 #pragma once
+#include <span>
 #include <string>
 
-#include "core/base/image.h"
 #include "core/products/frame_header.h"
 
 namespace dmise {
@@ -11,8 +11,8 @@ struct Plane {
   std::string name;               // EXTNAME: "SOURCES"
   std::string unit;               // BUNIT, as FITS spells it: "electron/s"
   std::string what;               // comment of EXTNAME
-  const float* pixels = nullptr;  // rows x columns
-  int columns = 0, rows = 0;
+  std::span<const float> pixels;  // rows x columns
+  int columns = 0;
 };
 
 /// Writes a FITS image of 32-bit floats with the frame's header and world coordinates, atomically.

@@ -28,7 +28,7 @@ namespace {
 template <class Carrier>
 Plane plane(const char* name, const char* unit, const char* what,
             const Image<float, Carrier>& image) {
-  return {name, unit, what, image.pixels.data(), image.columns, image.rows};
+  return {name, unit, what, image.pixels, image.columns};
 }
 
 /// "2018-01-21T00:15:00.000" as Exif has it: "2018:01:21 00:15:00".

@@ -45,7 +45,7 @@ ExpectedElectronImage sample_plane(int columns = 200, int rows = 150) {
 }
 
 Plane as_plane(const ExpectedElectronImage& image) {
-  return {"SOURCES", "electron/s", "expected", image.pixels.data(), image.columns, image.rows};
+  return {"SOURCES", "electron/s", "expected", image.pixels, image.columns};
 }
 
 double sum_of(const auto& pixels) { return std::accumulate(pixels.begin(), pixels.end(), 0.0); }
