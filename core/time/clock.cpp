@@ -1,5 +1,6 @@
 #include "core/time/clock.h"
 
+#include "core/base/error.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -67,7 +68,12 @@ Ut1 Clock::ut1(SimTime t) const {
 
 SimTime Clock::sim_time(const Utc& utc) const {
   const TaiInstant tai = to_tai(to_instant(utc));
-  return {(tai.mjd - start_.mjd) * ns_per_day + (tai.ns_of_day - start_.ns_of_day)};
+  SimTime time;
+  if (__builtin_mul_overflow(tai.mjd - start_.mjd, ns_per_day, &time.ns) ||
+      __builtin_add_overflow(time.ns, tai.ns_of_day - start_.ns_of_day, &time.ns))
+    throw Error(format_utc(utc, 0) + ": is more than 292 years from " +
+                format_utc(to_julian_date(to_utc(start_)), 0));
+  return time;
 }
 
 std::vector<std::string> Clock::warnings(SimTime end) const {

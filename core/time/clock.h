@@ -28,7 +28,7 @@ class Clock {
   /// The UT1 and polar motion that `ut1` uses.
   EarthRotationParameters earth_rotation(SimTime t) const;
 
-  /// Exact to the nanosecond.
+  /// Exact to the nanosecond. Throws `Error` beyond +-292 years from the start.
   SimTime sim_time(const Utc& utc) const;
 
   /// Returns warnings for a run from simulation time 0 to `end`, one line each; empty when all data

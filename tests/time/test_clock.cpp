@@ -22,6 +22,13 @@ TEST(Clock, ScalesAgreeWithTheirDefinitions) {
   EXPECT_EQ(format_utc(clock.utc(t), 9), "2018-01-21T00:00:34.567890123Z");
 }
 
+TEST(Clock, TimesThatNanosecondsCannotCountAreRefused) {
+  const Clock clock(parse_utc("2018-01-20T00:00:00Z"));
+  EXPECT_NO_THROW(clock.sim_time(parse_utc("2310-05-01T00:00:00Z")));
+  EXPECT_THROW(clock.sim_time(parse_utc("2310-05-03T00:00:00Z")), Error);
+  EXPECT_THROW(clock.sim_time(parse_utc("9999-12-31T00:00:00Z")), Error);
+}
+
 TEST(Clock, ARunAcrossALeapSecondIsUniformInTai) {
   const Clock clock(parse_utc("2016-12-31T23:59:58Z"));
   const char* seconds[] = {"2016-12-31T23:59:58Z", "2016-12-31T23:59:59Z", "2016-12-31T23:59:60Z",
