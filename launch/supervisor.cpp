@@ -65,11 +65,13 @@ void Supervisor::restart(const std::string& name) {
     if (child.name != name) continue;
     if (!child.exit_code) {
       kill(child.pid, SIGKILL);
-      waitpid(child.pid, nullptr, 0);
+      while (waitpid(child.pid, nullptr, 0) < 0 && errno == EINTR) {
+      }
+      child.exit_code = killed_by + SIGKILL;  // should the next line fail
     }
+    child.pid = spawn(name, child.arguments, child.log_path, true);
     child.exit_code.reset();
     if (first_failure_ == i) first_failure_.reset();
-    child.pid = spawn(name, child.arguments, child.log_path, true);
     ++child.starts;
   }
 }
