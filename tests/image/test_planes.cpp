@@ -132,7 +132,7 @@ TEST(Planes, FullDiskLeavesNoHalfFileAndIsNamed) {
   const auto write = [&](const std::string& path) {
     if (path.ends_with("plane.fits")) write_plane(path, as_plane(image), sample_header());
     if (path.ends_with("map.exr"))
-      write_exr(path, {.pixels = image.pixels.data(), .columns = 200, .rows = 150});
+      write_exr(path, {.columns = 200, .rows = 150, .channels = {{"Y", image.pixels.data()}}});
     if (path.ends_with("frame.fits")) write_frame(path, sample_counts(), sample_header());
   };
   for (const char* name : {"full-plane.fits", "full-map.exr", "full-frame.fits"}) {
