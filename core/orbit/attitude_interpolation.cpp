@@ -1,9 +1,6 @@
 #include "core/orbit/attitude_interpolation.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "core/base/units.h"
 
 namespace dmise {
 

@@ -18,10 +18,9 @@ struct MeanElements {
   double raan_rad = 0.0;                 // right ascension of the ascending node
   double argument_of_perigee_rad = 0.0;
   double mean_anomaly_rad = 0.0;
-  double bstar_per_earth_radius = 0.0;  // drag term B* [1 / Earth radius]
-  double mean_motion_dot_rad_per_min2 =
-      0.0;  // as the TLE prints it (half the derivative); SGP4 ignores it
-  double mean_motion_ddot_rad_per_min3 = 0.0;  // as the TLE prints it (a sixth); SGP4 ignores it
+  double bstar_per_earth_radius = 0.0;         // drag term B* [1 / Earth radius]
+  double mean_motion_dot_rad_per_min2 = 0.0;   // half the derivative, as in a TLE; not used
+  double mean_motion_ddot_rad_per_min3 = 0.0;  // a sixth of the second one, likewise
   int ephemeris_type = 0;                      // 0: SGP4; 4: SGP4-XP, which is not SGP4
   int element_number = 0;
   int revolution = 0;  // revolution number at epoch

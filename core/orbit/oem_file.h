@@ -9,7 +9,7 @@ namespace dmise {
 /// Metadata of an ephemeris file.
 struct OemSubject {
   std::string object_name;
-  std::string object_id;      // international designator, or whatever names it
+  std::string object_id;      // international designator, or another name
   std::string creation_date;  // of a simulation: its start, so that the bytes repeat
 };
 

@@ -1,7 +1,6 @@
 #include "core/orbit/sgp4_batch.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/units.h"
 #include "core/orbit/universal_kepler.h"
 
 namespace dmise {

@@ -8,8 +8,7 @@ namespace dmise {
 
 /// One veil over the whole sky.
 struct UniformCloud {
-  double transmission =
-      1.0;  // at the zenith, [0, 1]; towards the horizon to the power of the airmass
+  double transmission = 1.0;  // at the zenith, [0, 1]; elsewhere to the power of the airmass
 
   bool operator==(const UniformCloud&) const = default;
 };

@@ -1,10 +1,8 @@
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string>
 
 #include "core/sky/star_catalogue.h"
 

@@ -1,7 +1,6 @@
 #pragma once
 #include <limits>
 #include <memory>
-#include <vector>
 
 #include "core/effects/plan_facts.h"
 #include "core/photometry/band.h"

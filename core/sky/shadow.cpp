@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/units.h"
 #include "core/sky/kept_tables.h"
 #include "core/sky/sun_disc.h"
 

@@ -1,5 +1,4 @@
 // Star catalogues of comma-separated values, columns by the names in their header.
-#include <array>
 
 #include "core/base/error.h"
 #include "core/base/units.h"

@@ -1,7 +1,6 @@
 #include "core/visibility/camera_motion.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/frames/rotation_angle.h"

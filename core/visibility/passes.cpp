@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/units.h"
+#include "core/sky/air_exposure.h"
 #include "core/visibility/batch_states.h"
 
 namespace dmise {
@@ -71,7 +71,7 @@ class Follower {
   double sun_elevation_rad(const CameraMoment& camera) const {
     const Sunlight light(track_.sky(), camera.time);
     const Vec<Gcrs> to_sun = light.sun_m() - light.gcrs_from_teme() * camera.apex_m;
-    return std::asin(std::clamp(dot(light.gcrs_from_teme() * camera.up, unit(to_sun)), -1.0, 1.0));
+    return elevation_over(light.gcrs_from_teme() * camera.up, unit(to_sun));
   }
 
   PassMoment moment(SimTime t) const {

@@ -79,7 +79,7 @@ struct Aim {
     }
     const Vec<Enu> z = unit(line);
     Vec<Enu> side = cross(z, p.up);
-    // Along `up` another axis takes its place, which can't be along both.
+    // If the line is along `up`, an axis that is not takes its place.
     if (norm(side) < least_sine)
       side = cross(z, std::abs(z.y) < 0.9 ? Vec<Enu>{0, 1, 0} : Vec<Enu>{0, 0, 1});
     const Vec<Enu> x = unit(side), y = cross(z, x);

@@ -1,7 +1,6 @@
 #include "core/visibility/sightings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/visibility/batch_states.h"

@@ -19,7 +19,7 @@ Vec<Gcrs> apparent_direction(const SensorConfig& sensor, const PointingScene& sc
     const Vec<Itrs> up = enu_from_itrs(*scene.site).inverse() * Vec<Enu>{0, 0, 1};
     observer.air = Air{scene.itrs_from_gcrs.inverse() * up, refraction};
   }
-  // A mount follows what there is, whatever a plan leaves out of the frame.
+  // The mount follows all effects, also those that a plan leaves out of the frame.
   const EffectSet& effects = sensor.unplanned ? *sensor.unplanned : sensor.effects;
   return ApparentPlaces(observer, effects).satellite(position_m, slope_m_per_s).direction;
 }
