@@ -13,19 +13,8 @@ enum class Phase {
 
 /// Returns "gathering", "connecting", ...
 inline const char* phase_name(Phase phase) {
-  switch (phase) {
-    case Phase::gathering:
-      return "gathering";
-    case Phase::connecting:
-      return "connecting";
-    case Phase::running:
-      return "running";
-    case Phase::ended:
-      return "ended";
-    case Phase::failed:
-      break;
-  }
-  return "failed";
+  constexpr const char* names[] = {"gathering", "connecting", "running", "ended", "failed"};
+  return names[int(phase) - int(Phase::gathering)];
 }
 
 }  // namespace dmise

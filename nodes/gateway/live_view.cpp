@@ -27,8 +27,7 @@ template <class F>
 void put(JsonWriter& json, std::string_view name, const Vec<F>& v, double scale, double per_unit) {
   // Rounded: a message has many of them, and a screen few pixels.
   const auto round = [&](double x) { return std::round(x * scale * per_unit) / per_unit; };
-  json.key(name).begin_array();
-  json.value(round(v.x)).value(round(v.y)).value(round(v.z)).end_array();
+  json.list(name, {round(v.x), round(v.y), round(v.z)});
 }
 
 constexpr double km_per_m = 1e-3;

@@ -162,8 +162,8 @@ class RunObserver::Connections {
     if (truth_)
       for (const auto& publisher : endpoints.publishers()) follow_truth(publisher);
     for (const auto& node : status.nodes)
-      if (node.name == broker_name && !status.observe_endpoint.empty())
-        broker_.follow(status.observe_endpoint, node.incarnation, security_);
+      if (node.name == broker_name && !status.broker.observe.empty())
+        broker_.follow(status.broker.observe, node.incarnation, security_);
     tell_frame_endpoints(endpoints, status);
     view_.take(status, gaps_);
   }

@@ -28,29 +28,11 @@ std::uint32_t seal_of(std::string_view topic, std::string_view unsealed, std::st
 }  // namespace
 
 std::string_view name(Refusal reason) {
-  switch (reason) {
-    case Refusal::frames:
-      return "frames";
-    case Refusal::envelope:
-      return "envelope";
-    case Refusal::seal:
-      return "seal";
-    case Refusal::schema_version:
-      return "schema version";
-    case Refusal::run:
-      return "other run";
-    case Refusal::topic:
-      return "topic";
-    case Refusal::tick:
-      return "tick";
-    case Refusal::payload:
-      return "payload";
-    case Refusal::value:
-      return "value";
-    case Refusal::count:
-      break;
-  }
-  return "unknown";
+  static constexpr std::string_view names[] = {"frames",         "envelope",  "seal",
+                                               "schema version", "other run", "topic",
+                                               "tick",           "payload",   "value"};
+  static_assert(std::size(names) == std::size_t(Refusal::count));
+  return names[std::size_t(reason)];
 }
 
 Frames seal(std::string topic, const Envelope& envelope, std::string payload, std::string arrays) {

@@ -264,11 +264,11 @@ TEST(Network, AnObserverHearsTheWholeRunWithoutJoining) {
   ToyCamera camera("a");
   auto broker = start_broker(master.address);
   RunStatus status;
-  while (status.observe_endpoint.empty()) status = ask_master(master.address, 5);
+  while (status.broker.observe.empty()) status = ask_master(master.address, 5);
   zmq::context_t context(1);
   auto observer = make_socket(context, zmq::socket_type::sub, max_data_bytes);
   observer.set(zmq::sockopt::subscribe, objects_topic);
-  connect_to(observer, status.observe_endpoint);
+  connect_to(observer, status.broker.observe);
   [[maybe_unused]] const auto nodes = {start(orbit, master.address), start(camera, master.address)};
 
   std::uint64_t sequence = 0;
@@ -293,12 +293,12 @@ TEST(Network, AnObserverThatStopsReadingSlowsNobodyAndSeesItsGap) {
   ToyCamera camera("a");
   auto broker = start_broker(master.address, 1);
   RunStatus status;
-  while (status.observe_endpoint.empty()) status = ask_master(master.address, 5);
+  while (status.broker.observe.empty()) status = ask_master(master.address, 5);
   zmq::context_t context(1);
   auto observer = make_socket(context, zmq::socket_type::sub, max_data_bytes);
   observer.set(zmq::sockopt::rcvhwm, 1);
   observer.set(zmq::sockopt::subscribe, objects_topic);
-  connect_to(observer, status.observe_endpoint);
+  connect_to(observer, status.broker.observe);
   [[maybe_unused]] const auto nodes = {start(orbit, master.address), start(camera, master.address)};
   while (status.granted < last_tick - 20 && status.phase != Phase::failed)
     status = ask_master(master.address, 5);  // and does not read

@@ -12,15 +12,12 @@
 #include "nodes/runtime/observability/metric_families.h"
 #include "nodes/runtime/observability/metrics_server.h"
 #include "nodes/runtime/process/json_log.h"
+#include "nodes/runtime/process/seconds.h"
 
 namespace dmise {
 namespace {
 
 std::atomic<Metrics*> metrics_of_process{nullptr};
-
-double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 void append(MetricFamilies* all, MetricFamilies more) {
   std::move(more.begin(), more.end(), std::back_inserter(*all));
@@ -60,7 +57,7 @@ struct Metrics::Board {
   }
 
   const std::string program, node;
-  const double started_s = seconds_since_1970();
+  const double started_s = to_seconds(std::chrono::system_clock::now().time_since_epoch());
   mutable std::mutex mutex;               // guards what follows
   std::map<std::size_t, Figures> latest;  // by kind
 };

@@ -69,7 +69,6 @@ RunStatus status_of(const v1::Endpoints& e) {
                    .overruns = e.overruns(),
                    .worst_lag_s = e.worst_lag_s(),
                    .digest = e.digest(),
-                   .observe_endpoint = e.observe_endpoint(),
                    .broker = {e.broker().publish_endpoint(), e.broker().subscribe_endpoint(),
                               e.broker().observe_endpoint()},
                    .nodes = {},

@@ -39,9 +39,8 @@ struct RunStatus {
   double pace = 0.0;           // simulated seconds per second asked for; 0: as fast as possible
   std::uint64_t overruns = 0;  // ticks behind real time
   double worst_lag_s = 0.0;
-  std::uint64_t digest = 0;      // of everything published in settled ticks
-  std::string observe_endpoint;  // to subscribe to; empty without a broker
-  BrokerEndpoints broker;        // of the last broker; empty before the first
+  std::uint64_t digest = 0;  // of everything published in settled ticks
+  BrokerEndpoints broker;    // of the last broker; empty before the first
   std::vector<NodeStatus> nodes;
   std::vector<std::string> missing;
   std::vector<std::string> holding;  // nodes that the clock waits for

@@ -36,16 +36,6 @@ void KeptFrames::end() {
   changed_();
 }
 
-bool KeptFrames::wanted() const {
-  const std::lock_guard lock(mutex_);
-  return wanted_;
-}
-
-void KeptFrames::set_wanted(bool wanted) {
-  const std::lock_guard lock(mutex_);
-  wanted_ = wanted;
-}
-
 const KeptFrames::Kept* KeptFrames::wanted_by(const v1::FrameRequest& request) const {
   const auto first_from = [this](std::uint64_t number) -> const Kept* {
     const auto at = std::ranges::lower_bound(kept_, number, {}, &Kept::number);

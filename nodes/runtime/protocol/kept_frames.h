@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -37,8 +38,8 @@ class KeptFrames {
   void end();
 
   /// Whether readers are connected. Frames that are not in files need to be kept only then.
-  bool wanted() const;
-  void set_wanted(bool wanted);
+  bool wanted() const { return wanted_; }
+  void set_wanted(bool wanted) { wanted_ = wanted; }
 
   struct Answer {
     v1::FrameAnswer head;
@@ -58,11 +59,12 @@ class KeptFrames {
   const Kept* wanted_by(const v1::FrameRequest& request) const;
 
   std::string sensor_;
+  std::atomic<bool> wanted_{false};
   mutable std::mutex mutex_;  // guards what follows
   std::deque<Kept> kept_;
   std::size_t held_bytes_ = 0;
   std::uint64_t made_ = 0;
-  bool wanted_ = false, over_ = false;
+  bool over_ = false;
   std::function<void()> changed_ = [] {};
 };
 

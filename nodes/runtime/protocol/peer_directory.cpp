@@ -86,12 +86,11 @@ void PeerDirectory::make_for_observer(v1::Topology* topology) const {
 }
 
 void PeerDirectory::describe(v1::Endpoints* endpoints) const {
-  if (const auto broker = peers_.find("broker"); broker != peers_.end())
-    endpoints->set_observe_endpoint(broker->second.join.broker().observe_endpoint());
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker()) {
       *endpoints->mutable_broker() = peer.join.broker();
       endpoints->mutable_broker()->clear_password();
+      endpoints->set_observe_endpoint(peer.join.broker().observe_endpoint());
     } else if (!peer.join.agent() && !peer.join.observer()) {
       fill(endpoints->add_publishers(), peer);
     }

@@ -20,16 +20,8 @@ constexpr const char* truth_property = "X-Truth";
 constexpr const char* nodes_property = "X-Nodes";  // names, a line end before and after each
 
 const char* name_of(Domain domain) {
-  switch (domain) {
-    case Domain::control:
-      return "control";
-    case Domain::data:
-    case Domain::run:
-      return "data";
-    case Domain::truth:
-      break;
-  }
-  return "truth";
+  if (domain == Domain::control) return "control";
+  return domain == Domain::truth ? "truth" : "data";
 }
 
 /// One ZMTP property: length, name, length in four bytes, value.
@@ -100,11 +92,10 @@ void Security::serve(zmq::socket_t& socket, const std::string& address, Domain d
   if (!on()) {
     if (domain != Domain::run || password_.empty()) return;
     socket.set(zmq::sockopt::plain_server, 1);
-    socket.set(zmq::sockopt::zap_domain, name_of(domain));
-    return;
+  } else {
+    socket.set(zmq::sockopt::curve_server, 1);
+    socket.set(zmq::sockopt::curve_secretkey, key_.secret_key);
   }
-  socket.set(zmq::sockopt::curve_server, 1);
-  socket.set(zmq::sockopt::curve_secretkey, key_.secret_key);
   socket.set(zmq::sockopt::zap_domain, name_of(domain));
 }
 
