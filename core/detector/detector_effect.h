@@ -17,7 +17,7 @@
 // its parameters with
 //  static constexpr EffectFacts facts;
 //  static std::span<const DetectorParameter> parameters();
-//  void switch_off();                    sets parameters that have no effect
+//  void switch_off();                    sets parameters with which it does nothing
 //  bool applies(const Detector&) const;  whether it changes anything in a frame
 //  apply(const ExposureFacts&, Piece&) const                         on a piece of the image, or
 //  apply(const ExposureFacts&, const ElectronImage&, Piece&) const   with neighbouring pixels, or
@@ -28,6 +28,9 @@
 //      called before the first pixel; its result is passed to `apply` after the facts
 //  static std::optional<DetectorFault> fault(const Detector&);
 //      returns an invalid combination of parameters
+//  ErrorBound error(int level, const PlanFacts&) const;  of a level below the reference; without it
+//      the effect is not planned
+//  double cost_s(int level, const PlanFacts&) const;     of a level; without it none
 // To add one: write its file pair, list it in core/detector/detector.h, test it.
 namespace dmise {
 
