@@ -4,11 +4,12 @@
 
 namespace dmise {
 
-/// Bounds of what one exposure lacks of its reference, in the units in which frames are used.
+/// Bounds of the differences between one exposure and its reference, in the units in which frames
+/// are used.
 struct ErrorBound {
   double photometry_mag = 0.0;    // of any source in the frame
   double position_px = 0.0;       // of any source's centroid
-  double background_sigma = 0.0;  // of any pixel between sources, in its noise
+  double background_sigma = 0.0;  // of any pixel between sources, in units of its noise
   double noise = 0.0;             // of any pixel's noise, relative
 
   ErrorBound& operator+=(const ErrorBound& o) {

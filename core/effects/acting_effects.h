@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// The effects of a list that act in one exposure: those that are switched on and apply there, each
+/// The effects of a list that act in one exposure: those that are switched on and apply to it, each
 /// made from the facts of the exposure.
 template <class List>
 class ActingEffects;
@@ -15,7 +15,7 @@ class ActingEffects;
 template <class... Effects>
 class ActingEffects<EffectList<Effects...>> {
  public:
-  /// An effect that has no constructor from `exposure` is made without.
+  /// An effect without a constructor that takes `exposure` is made by its default constructor.
   template <class... Facts>
   ActingEffects(const EffectSet& switched, const SceneFacts& scene, const Facts&... exposure) {
     const auto make = [&]<class Effect>(std::optional<Effect>& effect) {
@@ -37,7 +37,7 @@ class ActingEffects<EffectList<Effects...>> {
     (visit_one(std::get<std::optional<Effects>>(effects_)), ...);
   }
 
-  /// Null: it does not act.
+  /// Null if the effect does not act.
   template <class Effect>
   const Effect* find() const {
     const auto& effect = std::get<std::optional<Effect>>(effects_);

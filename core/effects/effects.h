@@ -28,23 +28,23 @@ struct EffectFacts {
   int unplanned() const { return !usual ? 0 : usual_level < 0 ? reference() : usual_level; }
 };
 
-/// The facts by which effects of place and light apply to a sensor's frames or not.
+/// The facts that decide which effects of place and light apply to a sensor's frames.
 struct SceneFacts {
   bool on_ground = true;
-  bool clouds = false;           // over a ground sensor
-  bool gases = false;            // over it are known, water vapour among them
+  bool clouds = false;           // over a sensor on the ground
+  bool gases = false;            // known amounts of gases over it, with water vapour
   bool stars = true;             // there is a catalogue
   bool shapes = true;            // there are objects with a shape
   bool vignettes = false;        // the optics lose light off the axis
-  bool diffracts = false;        // their blur depends on the wavelength
-  bool turbulent = false;        // and on the air
+  bool diffracts = false;        // the blur of the optics depends on the wavelength
+  bool turbulent = false;        // the air blurs, too
   bool synthetic_stars = false;  // the scenario asks for some
   bool blur_varies = false;      // over the field, by a table
   bool focus_drifts = false;
-  bool stray_light = false;  // the optics scatter what is beside the field
-  // Whose disc is in the field or next to it, in the exposure.
+  bool stray_light = false;  // the optics scatter light from beside the field
+  // A body's disc is in the field or next to it during the exposure.
   bool sun_in_field = false, moon_in_field = false, earth_in_field = false;
-  bool shutter_closed = false;  // in the exposure: no light comes in
+  bool shutter_closed = false;  // during the exposure: no light comes in
   bool limb_in_field = false;   // from space: light may come through the air over the Earth's limb
 };
 
@@ -63,7 +63,7 @@ struct EffectList {
   }
 };
 
-/// At which level each effect runs: the usual ones but for those that a scenario or a plan sets.
+/// The level at which each effect runs: the usual one unless a scenario or a plan sets another.
 class EffectSet {
  public:
   int level(const EffectFacts& effect) const {
@@ -81,7 +81,7 @@ class EffectSet {
   void set(const EffectFacts& effect, bool on) {
     set_level(effect, !on ? 0 : effect.usual ? effect.unplanned() : effect.reference());
   }
-  /// The same by the user's wish, which no plan changes.
+  /// The same as the user asks for it: no plan changes the level.
   void force_level(const EffectFacts& effect, int level) {
     set_level(effect, level);
     forced_.insert(effect.name);
@@ -94,13 +94,13 @@ class EffectSet {
   /// Snapshots along an exposure in which light is integrated; 0: along the path, exactly.
   int snapshots() const { return snapshots_; }
   void set_snapshots(int count) { snapshots_ = count; }
-  /// Whether OpenGL draws the snapshots, and the sky, instead of the analytic deposit.
+  /// Whether OpenGL draws snapshots and sky, instead of the analytic deposit.
   bool drawn_by_opengl() const { return opengl_; }
   void draw_by_opengl(bool on) { opengl_ = on; }
   bool operator==(const EffectSet&) const = default;
 
  private:
-  std::map<std::string_view, int> level_;  // those that are not as usual
+  std::map<std::string_view, int> level_;  // of effects whose level is not the usual one
   std::set<std::string_view> forced_;
   int snapshots_ = 0;
   bool opengl_ = false;

@@ -6,9 +6,9 @@
 namespace dmise {
 namespace {
 
-/// What `count` wavelengths miss of a fringe that the whole band smears, of its amplitude: they
-/// leave sin(phase) / (n sin(phase / n)) of it, the band sin(phase) / phase. `phase_rad`: by how
-/// much the ends of the band are apart there.
+/// Error of a fringe by `count` wavelengths instead of the whole band, relative to its amplitude:
+/// they leave sin(phase) / (n sin(phase / n)) of it, the band sin(phase) / phase. `phase_rad`: the
+/// difference in phase between the ends of the band.
 double of_fringe(int count, double phase_rad) {
   if (phase_rad < 1e-3) return 0.0;
   const double step_rad = phase_rad / count;
@@ -18,9 +18,9 @@ double of_fringe(int count, double phase_rad) {
   return std::min(1.0, std::min(1.0, phase_rad) * missed);
 }
 
-/// What is off beyond three widths of a source among its rings, in noise, where by definition there
-/// is no background where a source leaves more than half of the noise. r / airy rings from the
-/// source, the ends of a band are r / airy x bandwidth of a ring apart.
+/// Error of the light among the rings of a source, beyond three of its widths, in units of the
+/// noise. By definition there is no background where a source leaves more than half of the noise.
+/// At a distance r the ends of the band are r / airy x bandwidth of a ring apart.
 double rings_in_noise(int count, const PlanFacts& f, double source_e) {
   constexpr int radii = 12;
   constexpr double half_noise = 0.5, brighter = 4.0;  // rings than their mean, with spikes
@@ -41,7 +41,7 @@ double rings_in_noise(int count, const PlanFacts& f, double source_e) {
   return std::min(largest, half_noise * left);
 }
 
-/// The same among the speckles of an object's `size_px`: many of them are even.
+/// The same among the speckles of an object of `size_px`, which even out if they are many.
 double speckles_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
   constexpr double of_speckles[] = {2.6, 1.5, 1.1, 0.75, 0.0};
   constexpr double peak = 4.0, narrow = 0.5, half_noise = 0.5;

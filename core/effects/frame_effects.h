@@ -3,8 +3,8 @@
 
 #include "core/effects/plan_facts.h"
 
-// The effects that sensors/pipeline runs as stages of a frame's light, or chooses between; here is
-// what configuration and documents need of them.
+// The effects that sensors/pipeline runs as stages of a frame's light, or chooses between: their
+// facts, errors and costs, which configuration, documents and the planner need.
 namespace dmise {
 
 struct SkyBackground {
@@ -27,7 +27,7 @@ struct SpaceObjects {
   }
 };
 
-/// From which size on an object with a shape is drawn as one.
+/// The size from which on an object with a shape is not drawn as a point.
 struct ResolvedShapes {
   /// Angular radius up to which it is a point [px].
   static constexpr std::array<double, 5> tolerance_px{1.0, 0.5, 0.2, 0.05, 0.01};
@@ -59,7 +59,7 @@ struct ResolvedShapes {
 };
 
 struct StarBackground {
-  /// To which V magnitude stars are drawn one by one; fainter ones are in the smooth starlight.
+  /// V magnitude to which stars are drawn one by one; fainter ones are in the smooth starlight.
   static constexpr std::array<std::string_view, 18> levels{
       "off", "v0", "v1",  "v2",  "v3",  "v4",  "v5",  "v6",  "v7",
       "v8",  "v9", "v10", "v11", "v12", "v13", "v14", "v15", "all"};
@@ -79,7 +79,7 @@ struct StarBackground {
   }
 };
 
-/// Stars beyond the catalogue, by counts.
+/// Stars beyond the catalogue, drawn from star counts.
 struct SyntheticBackground {
   static constexpr std::array<std::string_view, 14> levels{"off", "v10", "v11", "v12", "v13",
                                                            "v14", "v15", "v16", "v17", "v18",
@@ -104,9 +104,9 @@ struct SyntheticBackground {
   }
 };
 
-/// How the smooth sky comes to the pixels.
+/// How finely the smooth sky is sampled.
 struct SkyGrid {
-  /// Relative error of the grid between pixels at which the sky is looked at.
+  /// Relative error of the sky between the pixels at which it is evaluated.
   static constexpr std::array<double, 5> tolerance{0.02, 0.005, 0.001, 0.0002, 0.0};
   static constexpr std::array<std::string_view, 5> levels{"2%", "0.5%", "0.1%", "0.02%", "pixel"};
   static constexpr EffectFacts facts{"sky_grid",
@@ -117,9 +117,9 @@ struct SkyGrid {
                                      true,
                                      levels,
                                      1};
-  /// Of the light, on uncut patches of 32 px: the zodiacal table, which bends at its nodes, is
-  /// missed by 0.7 a radian of a patch, the other parts by 1.5 a square radian; moonlight has a
-  /// kink 9 deg from the Moon and rises to it; clouds have edges.
+  /// Error on uncut patches of 32 px [e-]: relative 0.7 times the size of a patch in radians for
+  /// the zodiacal table, which bends at its nodes, and 1.5 times its square for the other parts.
+  /// Moonlight has a kink 9 deg from the Moon and rises towards it; clouds have edges.
   static double of_patches(const SkySample& s, const PlanFacts& f) {
     if (std::isfinite(f.cloud_detail_px)) return s.sky_e;
     constexpr double beyond_kink_rad = 0.2;
@@ -132,7 +132,8 @@ struct SkyGrid {
     }
     return missed_e;
   }
-  /// What cutting leaves, at most. It does not find pieces of cloud that are smaller than a patch.
+  /// Bound of the error that cutting leaves [e-]. Cutting does not find pieces of cloud that are
+  /// smaller than a patch.
   static double of_cut(int level, const SkySample& s, const PlanFacts& f) {
     constexpr double smallest_px = 64.0;
     const double share =
@@ -173,8 +174,8 @@ struct PsfWavelengths {
   static int wavelengths(int level, const PlanFacts& f) {
     return std::max(count[std::size_t(level)], f.least_wavelengths);
   }
-  /// Of kernels that are kept a hundredth, since they are computed once for many frames. Of those
-  /// that the air changes the first wavelength is charged to turbulence.
+  /// A hundredth of the cost of kernels that are kept, since they are computed once for many
+  /// frames. Of kernels that the air changes the first wavelength is charged to turbulence.
   static double cost_s(int level, const PlanFacts& f) {
     const int wavelengths = PsfWavelengths::wavelengths(level, f);
     return f.kernel_s * (f.kernels_change ? wavelengths - 1.0 : 0.01 * wavelengths);
@@ -192,7 +193,7 @@ struct Occlusion {
   }
 };
 
-/// How light moves over the plane: along its path, exactly, or as snapshots.
+/// How the motion of sources is drawn: exactly along their paths, or as snapshots.
 struct Streak {
   static constexpr EffectFacts facts{
       "streak",
@@ -203,7 +204,7 @@ struct Streak {
       false};
 };
 
-/// What puts light on the plane.
+/// What draws light on the focal plane.
 struct Drawing {
   static constexpr EffectFacts facts{
       "evaluator",

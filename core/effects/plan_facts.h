@@ -25,7 +25,7 @@ enum class SkyPart {
 };
 inline constexpr std::size_t sky_part_count = static_cast<std::size_t>(SkyPart::count);
 
-/// Where the sky is looked at to plan an exposure: a pixel's light and noise there [e-].
+/// A sample of the sky by which an exposure is planned: light and noise of a pixel there [e-].
 struct SkySample {
   double sky_e = 0.0;                           // all parts
   double noise_e = 1.0;                         // of sky, dark current and read-out, > 0
@@ -37,8 +37,8 @@ struct SkySample {
 /// Limits of stars by whole V magnitudes from 0.
 inline constexpr std::size_t star_limits = 32;
 
-/// What is known of a sensor and one exposure before it is made: by it effects state their errors
-/// and costs. All figures are finite.
+/// What is known of a sensor and one exposure before it is made. Effects state their errors and
+/// costs by it. All figures are finite.
 struct PlanFacts {
   SceneFacts scene;
   // The sensor.
@@ -46,30 +46,30 @@ struct PlanFacts {
   double pixel_rad = 1e-5;          // the finest scale of the field
   double relative_bandwidth = 0.2;  // width over centre
   double fwhm_px = 1.0;
-  double peak_share = 1.0;  // of a point's light in its brightest pixel, most
+  double peak_share = 1.0;  // largest share of a point's light in its brightest pixel
   int screens = 0;          // of turbulence, in short exposures: a point is a cloud of speckles
   double speckle_px = 1.0;  // width of the finest structure of a point
   double ghost_pixel_share = 0.0;  // of a point's light, in a pixel of the lens's ghost of it
-  /// Where kernels of the blur end, and a pixel's share of a point's light there if they did not:
-  /// they taper to 0 over their outer half.
+  /// Where kernels of the blur end, and a pixel's share of a point's light there without the taper
+  /// to 0 over their outer half.
   double kernel_end_px = unbounded, kernel_end_share = 0.0;
   double airy_px = 1.0;  // wavelength / aperture
-  /// How much of the rings of diffraction pixels, seeing and jitter leave, 0..1.
+  /// Contrast of the rings of diffraction after pixels, seeing and jitter, 0..1.
   double ring_contrast = 1.0;
   // Light between sources.
   std::vector<SkySample> sky;  // over the field, where it sees the sky; at least one
   static constexpr double usual_between = 1.25;
-  /// How much brighter a part of the sky may be between the samples.
+  /// Largest factor by which a part of the sky may be brighter between the samples.
   std::array<double, sky_part_count> between_samples = [] {
     std::array<double, sky_part_count> usual{};
     usual.fill(usual_between);
     return usual;
   }();
-  /// Light of a pixel beyond which it is saturated, whatever the plan: more of it shows nowhere.
+  /// Light of a pixel beyond which it is saturated, whatever the plan.
   double saturated_e = unbounded;
   double nearest_moon_rad = 3.0;       // to the nearest of the field
   double cloud_detail_px = unbounded;  // size of the smallest pieces of cloud in the field
-  double sky_look_s = 0.32e-6;         // what one look at all parts costs
+  double sky_look_s = 0.32e-6;         // cost of evaluating all parts once
   double dark_e = 0.0, read_noise_e = 0.0;
   bool read_later = false;  // its noise is drawn after effects that take charge only
   // The air.
@@ -108,22 +108,22 @@ struct PlanFacts {
   std::array<double, star_limits> synthetic_brighter{}, synthetic_left_e{};
   // Objects.
   std::size_t objects = 0, shapes = 0;
-  double light_time_rad = 0.0;  // way of an object while its light travels, seen from the sensor
-  bool near_shadow = false;     // an object is in the Earth's shadow or close
+  double light_time_rad = 0.0;  // motion of an object while its light travels, seen by the sensor
+  bool near_shadow = false;     // an object is in the Earth's shadow or near it
   bool near_shadow_of_air = false;  // sunlight to an object passes the Earth's air, or may
   double brightest_object_e = 0.0;
   std::vector<double> shape_radius_px;    // of each object with a shape
   double narrowest_object_px = 0.0;       // 0: a point
-  double hidden_sky_px = 0.0;             // pixels of sky behind an object, most
-  bool faint_objects = false;             // one may be no source that counts
+  double hidden_sky_px = 0.0;             // largest number of pixels of sky behind an object
+  bool faint_objects = false;             // an object may be too faint to count as a source
   double longest_trail_px = 0.0;          // of any source, within the frame
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
   /// Turbulence before the sensor, at the centre of its band.
   struct Air {
     double airy_px = 1.0;             // wavelength / aperture
     double apertures_per_r0 = 1.0;    // aperture / r0
-    double apertures_blown = 0.0;     // by the wind in the exposure
-    int screens = 0;                  // that short exposures take; 0: they are long ones
+    double apertures_blown = 0.0;     // way of the wind in the exposure / aperture
+    int screens = 0;                  // of short exposures; 0: exposures are long
     double still_peak_share = 1.0;    // as `peak_share`, without turbulence
     bool still_is_deposited = false;  // without turbulence the blur takes no transform
     bool can_be_off = true;           // the blur can be computed without it
@@ -135,17 +135,17 @@ struct PlanFacts {
   int least_wavelengths = 1;    // of the band, by the camera
   bool kernels_change = false;  // with every exposure
   double kernel_s = 0.0;        // of all kernels of one wavelength
-  /// What the kernels over the field that a level of `psf_field` has lack of that of a place: the
-  /// share of a point's light that is elsewhere, and the displacement of its centroid, at most.
+  /// Largest differences between the kernels of each level of `psf_field` and the true blur of a
+  /// place: share of a point's light that is misplaced, and displacement of its centroid.
   static constexpr std::size_t field_levels = 4;
   std::array<double, field_levels> field_misplaced{}, field_shift_px{};
-  /// By how much defocus differs from the usual in the run, as the diameter of its disc.
+  /// Largest difference of defocus from the usual in the run, as the diameter of its disc.
   double defocus_px = 0.0;
 
   double pixels() const { return double(columns) * rows; }
-  /// Returns how often the sky is looked at for its grid, about.
+  /// Returns about how often the sky is evaluated for its grid.
   double sky_looks() const { return 1.7 * (columns / 32.0 + 2.0) * (rows / 32.0 + 2.0); }
-  /// Returns the place of a limit in the arrays of stars.
+  /// Returns the index of a limit in the arrays of stars.
   static std::size_t limit(double v_mag) {
     return std::size_t(std::clamp(v_mag, 0.0, double(star_limits) - 1.0));
   }
@@ -155,28 +155,28 @@ struct PlanFacts {
     for (const auto& s : sky) least = std::min(least, s.noise_e);
     return sky.empty() ? 1.0 : least;
   }
-  /// Returns the largest share of a pixel's noise that `light_e` is in the field.
+  /// Returns `light_e` in units of the smallest noise of a pixel.
   double in_noise(double light_e) const { return light_e / least_noise_e(); }
   double sigma_px() const { return std::hypot(fwhm_px / 2.355, 0.29); }
-  /// Returns the root of the sum of squares of the light by pixels of a source of trail `trail_px`:
-  /// the light of a source over its deviation by noise is that times its light over a pixel's
-  /// noise, and a pattern of independent pixels changes it by so much of itself.
+  /// Returns the root of the sum of squares of the shares that pixels have of the light of a source
+  /// with a trail of `trail_px`. The signal-to-noise ratio of a source is that times its light over
+  /// a pixel's noise, and a relative pattern of independent pixels changes its light by that share.
   double pattern_share(double trail_px = 0.0) const {
     const double sigma = sigma_px();
     return std::min(1.0, std::sqrt(0.2821 / sigma / std::max(trail_px, 3.545 * sigma)));
   }
   /// Returns the light of the faintest source whose photometry and position count.
   double faintest_source_e() const { return least_snr * least_noise_e() / pattern_share(); }
-  /// Returns what of a pixel's noise a source has in its brightest pixel, at a signal to noise
-  /// ratio of its whole light.
+  /// Returns the light in the brightest pixel of a source, in units of the pixel's noise; `snr`: of
+  /// its whole light.
   double peak_in_noise(double snr, double trail_px) const {
     const double share = trail_px > 2.0 ? std::sqrt(peak_share) / (0.5 * trail_px) : peak_share;
     const double speckle = screens > 0 ? 1.0 + 3.0 / std::sqrt(double(screens)) : 1.0;
     return speckle * snr * std::min(share, peak_share) / pattern_share(trail_px);
   }
 
-  /// Returns the relative noise of light that is so much of a pixel's noise, which is measured as
-  /// no less than one electron.
+  /// Returns the relative error of a pixel's noise by an error of its light, in units of the noise.
+  /// The noise is taken as no less than one electron.
   double noise_of(double background_sigma) const {
     const double noise_e = least_noise_e();
     return std::min(1.0, 0.5 * background_sigma * std::max(1.0, noise_e) / (noise_e * noise_e));
@@ -196,7 +196,8 @@ struct PlanFacts {
   ErrorBound shifted_by(double angle_rad) const {
     return faint_objects ? shifted_objects(angle_rad) : shifted_stars(angle_rad);
   }
-  /// Error of sources whose light is off by a factor, with that of those too faint for photometry.
+  /// Error of sources whose light is wrong by `magnitude`, and of the background by sources that
+  /// are too faint for photometry.
   ErrorBound dimmed_by(double magnitude) const {
     const double trail_px = faint_objects ? 0.0 : star_trail_px;
     const double background_sigma = peak_in_noise(least_snr, trail_px) * std::min(1.0, magnitude);
@@ -204,7 +205,7 @@ struct PlanFacts {
             .background_sigma = background_sigma,
             .noise = noise_of(background_sigma)};
   }
-  /// Error of the frame without light that `light_e(sample)` gives everywhere.
+  /// Error of a frame without the light `light_e(sample)`.
   template <class Light>
   ErrorBound without_light(const Light& light_e) const {
     ErrorBound error;
@@ -215,7 +216,7 @@ struct PlanFacts {
     }
     return error;
   }
-  /// The same of charge that all pixels have, also those that see no sky.
+  /// Error of a frame without charge that all pixels have, also those that see no sky.
   ErrorBound without_charge(double charge_e) const {
     const auto charge = [&](const SkySample&) { return charge_e; };
     ErrorBound error = without_light(charge);
@@ -241,7 +242,7 @@ struct PlanFacts {
     if (!(share < 0.99)) error.position_px = error.background_sigma = error.noise = unbounded;
     return error;
   }
-  /// The same for a part of the sky.
+  /// Error of a frame without a part of the sky.
   ErrorBound without_part(SkyPart part) const {
     const double most = between_samples[static_cast<std::size_t>(part)];
     return without_light([&](const SkySample& s) { return most * s.of(part); });
@@ -260,15 +261,16 @@ struct PlanFacts {
   /// Returns the light of the brightest source, at most.
   double brightest_e() const { return std::max(brightest_star_e, brightest_object_e); }
 
-  /// Of a source that counts, and of one that is no background.
+  /// Least signal-to-noise ratio of a source that counts, and of one that is not background.
   static constexpr double least_snr = 5.0, least_snr_of_source = 0.5;
-  /// Of a source's light: a neighbour with more is no neighbour of one that counts.
+  /// Largest share of a source's light that a neighbour may have in its aperture: with more the
+  /// source does not count.
   static constexpr double neighbour_share = 0.002;
 
  private:
-  /// What a shift changes where kernels of the brightest source end, in noise: their light is there
-  /// `end` x sin^2(pi x distance from the end / radius), and where it is more than half of the
-  /// noise is no background.
+  /// Error by a shift where kernels of the brightest source end, in units of the noise. Their light
+  /// is `end` x sin^2(pi x distance from the end / radius) there; where it exceeds half of the
+  /// noise there is no background.
   double kernel_end_in_noise(double px) const {
     const double end = in_noise(kernel_end_share * brightest_e());
     if (!(end > 0.0) || !std::isfinite(kernel_end_px)) return 0.0;
@@ -278,8 +280,8 @@ struct PlanFacts {
         std::min(0.5 * kernel_end_px, std::sqrt(half / end) / per_px + pixel_px);
     return std::min(end, end * per_px * per_px * px * (2.0 * from_end_px + px));
   }
-  /// How far the centroid of pixels moves, at most, while a Gaussian of that deviation moves by 1:
-  /// pixels that are too wide for it draw it to their middles, 1 + 2 sum_k exp(-2 (pi k sigma)^2).
+  /// Largest shift of the centroid of pixels per shift of a Gaussian of that deviation,
+  /// 1 + 2 sum_k exp(-2 (pi k sigma)^2): pixels that are too wide for it draw it to their middles.
   static double centroid_slope(double sigma_px) {
     if (sigma_px >= 0.4) return 1.0 + 2.0 * std::exp(-2.0 * pi * pi * sigma_px * sigma_px);
     const double sigma = std::max(sigma_px, 1e-3);

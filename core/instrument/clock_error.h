@@ -14,19 +14,20 @@ struct ClockError {
       "the error times the rate: up to 1 deg a second in a low orbit, 15 arcsec a second for stars",
       "offset, drift and a normal deviate an exposure"};
   double offset_s = 0.0;     // reading less true time, at the start of the run
-  double drift = 0.0;        // growth of it: seconds a second
-  double clock_rms_s = 0.0;  // of the jitter, which is another in each exposure
+  double drift = 0.0;        // growth of the offset [s/s]
+  double clock_rms_s = 0.0;  // of the jitter, drawn anew for each exposure
   bool operator==(const ClockError&) const = default;
 
   static std::span<const InstrumentParameter> parameters();
   bool applies() const { return offset_s != 0.0 || drift != 0.0 || clock_rms_s != 0.0; }
   ErrorBound error(int level, const PlanFacts& f) const;
 
-  /// Returns the true time at which the clock reads `reading`, in an exposure of this jitter.
+  /// Returns the true time at which the clock reads `reading`, in an exposure with this jitter.
   SimTime true_time(SimTime reading, double jitter_s) const;
+  /// The inverse.
   SimTime reading(SimTime true_time, double jitter_s) const;
 
-  /// No jitter is larger than this in rms: `normal_of` (core/base/rng.h) ends before.
+  /// Bound of the jitter in units of its rms: that of `normal_of` (core/base/rng.h).
   static constexpr double most_deviations = 6.35;
   double most_jitter_s() const { return most_deviations * clock_rms_s; }
   /// Returns the first and the last true time at which the clock may read `reading`.

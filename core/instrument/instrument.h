@@ -8,12 +8,12 @@ namespace dmise {
 /// In the order in which they run.
 using InstrumentEffects = EffectList<ClockError, PointingError, Vibration>;
 
-/// What a sensor does not know of itself.
+/// The errors of a sensor that it does not know of.
 struct Instrument : InstrumentEffects::Parameters {
   bool operator==(const Instrument&) const = default;
 };
 
-/// Without the effects that are off.
+/// Returns the instrument without the errors that are switched off.
 Instrument acting_instrument(const Instrument& instrument, const EffectSet& effects);
 
 }  // namespace dmise

@@ -5,9 +5,9 @@
 
 namespace dmise {
 
-/// Where a camera truly points, in the axes of the image that it was told to take: its boresight is
-/// `x` to the right and `y` down, along the great circle of both, and it is turned right-handed
-/// about that boresight by `roll`. Stars are displaced to the opposite side.
+/// Where a camera truly points, in the axes of the image that was commanded: its boresight is
+/// displaced by `x` to the right and `y` down, along one great circle, and it is turned
+/// right-handed about that boresight by `roll`. Stars are displaced to the opposite side.
 struct PointingError {
   static constexpr EffectFacts facts{
       "pointing_error", "the camera points elsewhere than it is told to",
@@ -15,7 +15,7 @@ struct PointingError {
       "rotation of the camera, with a normal deviate an exposure"};
   ImageAxes bias_rad{};
   ImageAxes drift_rad_per_s{};   // from the start of the run on
-  ImageAxes pointing_rms_rad{};  // of the jitter, which is another in each exposure
+  ImageAxes pointing_rms_rad{};  // of the jitter, drawn anew for each exposure
   bool operator==(const PointingError&) const = default;
 
   static std::span<const InstrumentParameter> parameters();
@@ -24,11 +24,12 @@ struct PointingError {
   double drift_size_rad_per_s() const;
   static ErrorBound error(int level, const PlanFacts& f);
 
-  /// Returns x, y and roll at the true time `t` of an exposure whose jitter is `deviate` [rms].
+  /// Returns x, y and roll at the true time `t`; `deviate`: jitter of the exposure in units of its
+  /// rms.
   ImageAxes at_rad(SimTime t, const ImageAxes& deviate) const;
 };
 
-/// Returns the axes of a camera that is displaced by x, y and roll [rad].
+/// Returns the rotation to the axes of a camera that is displaced by x, y and roll [rad].
 Rotation<CameraFrame, CameraFrame> true_from_commanded(const ImageAxes& displaced_rad);
 
 }  // namespace dmise

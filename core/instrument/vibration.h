@@ -7,17 +7,17 @@
 
 namespace dmise {
 
-/// A camera that trembles: right and down by as much each, independently, by a power spectral
-/// density and by sinusoids. An exposure of T seconds sees the mean of the tremble, its
-/// displacement, and the rest of it as blur: of the power at a frequency f it displaces sinc^2(pi f
-/// T) and blurs the rest. Displacements of exposures are those of one tremble in time; the blur is
-/// Gaussian, of the mean power, and part of the point spread.
+/// Vibration of a camera along both axes of the image, independent and of equal power, by a power
+/// spectral density and by sinusoids. In an exposure of T seconds a share sinc^2(pi f T) of the
+/// power at a frequency f displaces the image, and the rest blurs it. The displacements of a
+/// sensor's exposures are those of one vibration in time; the blur is Gaussian, of the mean power,
+/// and part of the point spread.
 struct Vibration {
   static constexpr EffectFacts facts{
-      "vibration", "the camera trembles: exposures are displaced and blurred",
+      "vibration", "the camera vibrates: exposures are displaced and blurred",
       "its rms: frequencies below that of exposures displace them, those above blur",
       "Lucke, Sirlin & San Martin 1992, J. Astronautical Sciences 40, 557"};
-  /// One-sided density of one axis, straight between frequencies that rise, none outside.
+  /// One-sided density of one axis, linear between frequencies in ascending order, 0 outside.
   std::vector<double> psd_frequency_hz, psd_rad2_per_hz;
   std::vector<double> sine_frequency_hz, sine_rms_rad;  // of one axis
   bool operator==(const Vibration&) const = default;
@@ -28,10 +28,11 @@ struct Vibration {
   bool applies() const { return shift_rms_rad(0.0) > 0.0; }
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
 
-  /// Rms along an axis of what an exposure sees as displacement, and as blur.
+  /// Rms of the displacement and of the blur of an exposure, along each axis.
   double shift_rms_rad(double exposure_s) const;
   double blur_rad(double exposure_s) const;
-  /// The displacement of an exposure about `middle`. `key` is of all exposures of a sensor.
+  /// Displacement of an exposure whose middle is `middle`. `key`: one for all exposures of a
+  /// sensor.
   ImageAxes shift_rad(const RngKey& key, SimTime middle, double exposure_s) const;
 
  private:

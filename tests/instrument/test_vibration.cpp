@@ -24,7 +24,7 @@ struct Case {
 };
 
 // Reference: scipy's quadrature of the spectrum, tests/reference/vibration.py, which agrees with
-// means and variances over exposures of a tremble that numpy makes in time.
+// means and variances over exposures of a vibration that numpy makes in time.
 constexpr Case cases[] = {{0.01, 3.638985, 1.033339},
                           {0.1, 2.817118, 2.524648},
                           {1.0, 1.138628, 3.607427},
@@ -66,7 +66,7 @@ TEST(Vibration, ExposuresAreDisplacedByItsRms) {
   }
 }
 
-// Displacements follow one tremble: near exposures are displaced alike, far ones are not.
+// Displacements follow one vibration: near exposures are displaced alike, far ones are not.
 TEST(Vibration, NearExposuresAreDisplacedAlike) {
   Vibration v;
   v.psd_frequency_hz = {0.01, 0.1};

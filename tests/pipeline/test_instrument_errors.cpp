@@ -230,7 +230,7 @@ TEST(InstrumentErrors, TruthHasTheTrueAttitude) {
   EXPECT_EQ(to_json(truth_of(exact.frame()), utc).find("camera_from_gcrs"), std::string::npos);
 }
 
-// A tremble of 0.4 Hz displaces exposures of 0.5 s, one of 40 Hz blurs them; both are 6 arcsec rms,
+// A vibration of 0.4 Hz displaces exposures of 0.5 s, one of 40 Hz blurs them; both are 6 arcsec rms,
 // 0.29 px. The truth and the header do not know of it.
 TEST(InstrumentErrors, VibrationDisplacesBySlowAndBlursByFastFrequencies) {
   const auto scene = [](const std::string& hz) {

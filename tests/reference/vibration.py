@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Displacement and blur of exposures by a camera's vibration, by scipy's quadrature of its spectrum and, independently, by numpy's
-means and variances over exposures of one tremble in time: the figures of tests/instrument/test_vibration.cpp."""
+means and variances over exposures of one vibration in time: the figures of tests/instrument/test_vibration.cpp."""
 import numpy as np
 from scipy.integrate import quad
 
