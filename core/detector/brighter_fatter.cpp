@@ -11,7 +11,7 @@ namespace {
 
 constexpr int reach = 3;  // pixels on either side of a boundary
 
-/// By which power of the distance the pull of a charge falls: that of 3/2 meets GalSim's solutions
+/// Power of the distance with which the pull of a charge falls: 3/2 agrees with GalSim's solutions
 /// of Poisson's equation for spots of 2 to 6 px to 6 %.
 constexpr double falloff = 1.5;
 

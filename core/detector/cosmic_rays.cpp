@@ -12,8 +12,8 @@
 namespace dmise {
 namespace {
 
-// Appends to `cuts` the fractions of a track of `length` from `from` in the direction `slope` at
-// which it crosses pixel borders of one axis.
+// Appends to `cuts` the fractions of a track from `from` to `from` + `extent` on one axis at which
+// it crosses pixel borders of that axis.
 void add_crossings(double from, double extent, std::vector<double>& cuts) {
   if (extent == 0.0) return;
   const double low = std::min(from, from + extent), high = std::max(from, from + extent);

@@ -34,7 +34,7 @@ using DetectorEffects =
                ChargeTransfer, EmGain, Nonlinearity, InterpixelCoupling, Ramp, ColumnNoise,
                ReadNoise, FixedPattern, Quantisation>;
 
-/// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing
+/// Parameters of a detector, those of its effects first. Effects with neutral parameters do nothing
 /// and cost nothing.
 struct Detector : DetectorEffects::Parameters {
   double quantum_efficiency = 1.0;  // mean over the band, (0, 1]
@@ -60,8 +60,9 @@ Detector acting_detector(const Detector& detector, const EffectSet& effects);
 /// that of read noise.
 bool reads_after_others(const Detector& acting);
 
-/// The same with dark current and read noise within the photons' Gaussian draw, at that level of
-/// it; not the read noise of a detector that reads after others.
+/// The same with dark current and read noise drawn together with the photons, at the level of
+/// photon noise that draws Gaussian deviates; without read noise if the detector
+/// `reads_after_others`.
 Detector drawn_together(const Detector& acting, const EffectSet& effects);
 
 }  // namespace dmise

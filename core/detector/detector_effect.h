@@ -30,7 +30,7 @@
 //      returns an invalid combination of parameters
 //  ErrorBound error(int level, const PlanFacts&) const;  of a level below the reference; without it
 //      the effect is not planned
-//  double cost_s(int level, const PlanFacts&) const;     of a level; without it none
+//  static double cost_s(int level, const PlanFacts&);    of a level; without it 0
 // To add one: write its file pair, list it in core/detector/detector.h, test it.
 namespace dmise {
 

@@ -3,13 +3,13 @@
 
 namespace dmise {
 
-/// The gain register of an electron-multiplying CCD, of which each of many stages multiplies an
-/// electron with a small probability, and clock-induced charge before it. n electrons become
-/// n + Poisson(Gamma(a n, (G - 1) / a)), which has the mean n G and the variance of Robbins &
-/// Hadwen 2003 for the number of stages by its a, about 1: the negative binomial distribution of
-/// the register without end, at large gains the Gamma distribution. The image keeps
-/// electrons before the register: `read_noise_e` and `gain_e_per_dn` are those of the amplifier
-/// behind it, divided by G.
+/// The gain register of an electron-multiplying CCD, in which each of many stages multiplies an
+/// electron with a small probability, and the clock-induced charge before it. n electrons become
+/// n + Poisson(Gamma(a n, (G - 1) / a)), of the mean n G; a, about 1, gives the variance of Robbins
+/// & Hadwen 2003 for the number of stages. Without limit of the stages this is the negative
+/// binomial distribution, at large gains the Gamma distribution. The image holds electrons before
+/// the register: `read_noise_e` and `gain_e_per_dn` are those of the amplifier behind it, divided
+/// by G.
 struct EmGain {
   static constexpr EffectFacts facts{
       "em_gain", "a register multiplies electrons at random",
@@ -32,7 +32,8 @@ struct EmGain {
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 90e-9 * f.pixels(); }
 
-  /// Variance behind the register, in electrons before it, over that of shot noise: 1 to 2.
+  /// Returns the variance behind the register, in electrons before it, over that of shot noise: 1
+  /// to 2.
   double excess_noise2() const;
 };
 

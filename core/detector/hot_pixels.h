@@ -26,7 +26,7 @@ struct HotPixels {
   bool applies(const Detector&) const {
     return hot_pixel_fraction > 0.0 && hot_pixel_e_per_s > 0.0;
   }
-  /// The hot pixels among `pixels`, sorted by index.
+  /// Returns the hot ones among `pixels` pixels, sorted by index.
   using Prepared = std::vector<HotPixel>;
   Prepared among(std::size_t pixels, const RngKey& fixed_key) const;
   Prepared prepare(const ExposureFacts& exposed) const {

@@ -62,7 +62,8 @@ std::uint32_t persistence_window(double persistence_s, double cadence_s);
 std::uint32_t persistence_first_frame(const Persistence& persistence, double cadence_s,
                                       std::uint32_t frame);
 
-/// Charge that goes into the traps: `fraction` of the collected, up to the full well.
+/// Sets `caught_e` to the charge that goes into the traps: `fraction` of the collected charge, up
+/// to the full well.
 void caught(double fraction, double full_well_e, std::span<const float> collected_e,
             std::span<float> caught_e);
 

@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// Defects of a pixel, as a sum of bits. The bits are part of the file format.
+/// Conditions of a pixel, as a sum of bits. The bits are part of the file format.
 enum PixelFlag : std::uint8_t {
   flag_full_well = 1,  // reached the full well
   flag_adc_high = 2,   // at the ADC's highest count

@@ -7,12 +7,12 @@
 namespace dmise {
 
 /// Reads of an infrared detector up the ramp of its charge: n of them, evenly from the reset to the
-/// end of the exposure. The signal is the slope of a line through them by least squares, or by
-/// Fowler's way the mean of the last reads less that of the first ones; times the exposure. Each
-/// read has the read noise, and reads of one ramp have the same noise of the reset, which a
-/// difference has not: a single read has it. Electrons come at uniform times, so that reads of a
-/// ramp are not independent: a fit has more shot noise than the last read. A cosmic ray is a jump
-/// at a time of its own.
+/// end of the exposure. The signal is the slope of a line through them by least squares, or, with
+/// Fowler sampling, the mean of the last reads less that of the first ones; times the exposure.
+/// Each read has the read noise. Reads of one ramp share the noise of the reset, which cancels in
+/// a difference of reads, but not in a single read. Electrons come at uniform times, so that reads
+/// of a ramp are not independent: a fit has more shot noise than the last read. A cosmic ray is a
+/// jump at its time.
 struct Ramp {
   static constexpr EffectFacts facts{
       "ramp", "the signal is fitted to many reads up the ramp of charge",
@@ -37,9 +37,9 @@ struct Ramp {
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 15e-9 * f.pixels(); }
 
-  /// Read noise of the signal, by that of one read.
+  /// Returns the read noise of the signal, from that of one read.
   double fitted_noise_e(double read_noise_e) const;
-  /// Variance of the signal by shot noise, over its electrons.
+  /// Returns the variance of the signal by shot noise, over its electrons.
   double shot_noise2() const;
 
  private:
