@@ -11,7 +11,6 @@
 #include "dmise/v1/node.pb.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/process_memory.h"
-#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 
@@ -59,7 +58,7 @@ void HeartbeatThread::run() {
   while (!quit_.is_set()) {
     if (now() >= next_beat) {
       beat();
-      next_beat = now() + options_.heartbeat;
+      next_beat = now() + from_seconds(options_.welcome.heartbeat_s());
     }
     std::vector<zmq::pollitem_t> items{{nullptr, quit_.fd(), ZMQ_POLLIN, 0},
                                        {heartbeat_.handle(), 0, ZMQ_POLLIN, 0}};
@@ -69,7 +68,7 @@ void HeartbeatThread::run() {
     wait_for(items,
              (askers_ && askers_->size() > 0 ? std::min(next_beat, next_look) : next_beat) - now());
     // While this process was suspended it could not receive anything.
-    if (now() - awake > options_.silent_after / 2) heard_ = now();
+    if (now() - awake > silent_after() / 2) heard_ = now();
     awake = now();
     handle_replies();
     if (resend_) answer();
@@ -84,11 +83,11 @@ void HeartbeatThread::run() {
 
 void HeartbeatThread::beat() {
   v1::NodeMessage message;
-  message.set_run_id(options_.run_id);
+  message.set_run_id(options_.welcome.run_id());
   auto* heartbeat = message.mutable_heartbeat();
-  heartbeat->set_name(options_.name);
-  heartbeat->set_incarnation(options_.incarnation);
-  heartbeat->set_token(options_.heartbeat_token);
+  heartbeat->set_name(options_.welcome.name());
+  heartbeat->set_incarnation(options_.welcome.incarnation());
+  heartbeat->set_token(options_.welcome.heartbeat_token());
   heartbeat->set_computing(computing_.load(std::memory_order_relaxed));
   heartbeat->set_progress(options_.progress ? options_.progress() : 0);
   {
@@ -103,23 +102,23 @@ void HeartbeatThread::beat() {
 void HeartbeatThread::handle_replies() {
   while (const auto frame = receive_one(heartbeat_)) {
     v1::MasterMessage message;
-    if (!from_frame(*frame, &message) || message.grant().run_id() != options_.run_id ||
+    if (!from_frame(*frame, &message) || message.grant().run_id() != options_.welcome.run_id() ||
         fault_of(message))
       continue;
     heard_ = now();
     post(message.grant());
   }
   const auto silence = now() - heard_;
-  if (!over_ && silence > options_.silent_after) {
+  if (!over_ && silence > silent_after()) {
     v1::Grant lost;
-    lost.set_run_id(options_.run_id);
+    lost.set_run_id(options_.welcome.run_id());
     lost.set_phase(v1::PHASE_FAILED);
     lost.set_cause(fmt::format("the time-master at {} has been silent for {:.1f} s",
                                options_.master, to_seconds(silence)));
     post(lost);
   } else if (over_ && !gone_ && silence > gone_after) {
     v1::Grant alone;  // its last words were lost
-    alone.set_run_id(options_.run_id);
+    alone.set_run_id(options_.welcome.run_id());
     alone.set_deserted(true);
     post(alone);
     gone_ = true;
@@ -143,7 +142,7 @@ void HeartbeatThread::answer() {
     for (std::size_t i = 1; i < message.size(); ++i) askers_->count_read(message[i]);
     v1::ResendRequest request;
     if (message.size() != 2 || !from_frame(message[1], &request) ||
-        request.run_id() != options_.run_id || fault_of(request))
+        request.run_id() != options_.welcome.run_id() || fault_of(request))
       continue;
     if (options_.security.on() && request.topic().starts_with(truth_prefix) &&
         !may_receive_truth(message[1]))
@@ -160,7 +159,7 @@ void HeartbeatThread::leave_if_stuck() {
   if (!over_since_ && (over_ || (options_.stop && options_.stop->is_set()))) over_since_ = now();
   if (!over_since_ || !computing_.load(std::memory_order_relaxed)) return;
   if (now() - *over_since_ < options_.stop_within) return;
-  spdlog::error("{}: stopping in the middle of a step", options_.name);
+  spdlog::error("{}: stopping in the middle of a step", options_.welcome.name());
   _exit(1);
 }
 

@@ -8,6 +8,7 @@
 #include "dmise/v1/node.pb.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/process/event.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/outbox.h"
 #include "nodes/runtime/protocol/time_split.h"
 #include "nodes/runtime/transport/peer_monitor.h"
@@ -18,19 +19,14 @@ namespace dmise {
 struct HeartbeatOptions {
   std::string master;  // address of its ROUTER
   Security security;
-  std::string name;
-  std::uint64_t run_id = 0;
-  std::uint64_t incarnation = 0;
-  std::uint64_t heartbeat_token = 0;
-  std::chrono::nanoseconds heartbeat{};
-  std::chrono::nanoseconds silent_after{};  // timeout of the master
+  v1::Welcome welcome;                      // the master's answer to Join
   std::chrono::nanoseconds stop_within{0};  // ends the process if a step lasts longer than this
                                             // after the end of the run or `stop`; 0: never
   const Event* stop = nullptr;              // may be null
   std::function<std::uint64_t()> progress;  // of the step; called from the heartbeat thread
   std::function<std::vector<SharedFrames>(const v1::ResendRequest&)> resend;
-  std::function<void(v1::Heartbeat*)>
-      add_to_heartbeat;  // may be empty; called from the heartbeat thread
+  // May be empty; called from the heartbeat thread.
+  std::function<void(v1::Heartbeat*)> add_to_heartbeat;
 };
 
 /// A node's second thread: sends heartbeats with the progress of the step, receives the grant in
@@ -57,6 +53,7 @@ class HeartbeatThread {
   void answer();
   void post(const v1::Grant& grant);
   void leave_if_stuck();
+  Instant silent_after() const { return from_seconds(options_.welcome.silent_after_s()); }
 
   HeartbeatOptions options_;
   zmq::socket_t heartbeat_;

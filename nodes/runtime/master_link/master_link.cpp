@@ -4,7 +4,6 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/process/monotonic_clock.h"
-#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 
@@ -49,12 +48,8 @@ v1::Welcome MasterLink::join(const v1::Join& request, nanoseconds within) {
 void MasterLink::keep(HeartbeatOptions options, std::optional<zmq::socket_t> resend_socket) {
   options.master = master_;
   options.security = security_;
-  options.name = name_;
-  options.run_id = welcome_.run_id();
-  options.incarnation = welcome_.incarnation();
-  options.heartbeat_token = welcome_.heartbeat_token();
-  options.heartbeat = from_seconds(welcome_.heartbeat_s());
-  options.silent_after = from_seconds(welcome_.silent_after_s());
+  options.welcome = welcome_;
+  options.welcome.set_name(name_);
   options.stop = stop_;
   heartbeat_ =
       std::make_unique<HeartbeatThread>(context_, std::move(options), std::move(resend_socket));
