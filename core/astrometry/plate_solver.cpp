@@ -264,8 +264,8 @@ PlateSolution PlateSearcher::solve() {
     if (!found_) try_all(PatternIndex(sky_, stars, triangle_neighbours, 2), list);
   }
   if (!found_)
-    fail("no stars of the catalogue are where " + std::to_string(frame_.sources().size()) +
-         " sources are, in " + std::to_string(tried_) + " candidates");
+    fail("stars of the catalogue match the " + std::to_string(frame_.sources().size()) +
+         " sources in none of " + std::to_string(tried_) + " candidates");
   return std::move(*found_);
 }
 

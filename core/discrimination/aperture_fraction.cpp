@@ -35,7 +35,7 @@ double aperture_fraction(const Optics& optics, double wavelength_m, double radiu
   const PointSpread& spread = optics.spread;
   if (!(radius_px > 0.0)) throw Error("aperture: radius_px: must be > 0");
   if (!is_round(spread))
-    throw Error("aperture: the camera's point spread is not round: its aberrations are not known");
+    throw Error("aperture: the camera has aberrations or spiders: its point spread is not round");
   const bool gaussian = spread.model == PointSpread::Model::gaussian;
   const double pixel_rad = optics.pixel_angle_rad();
   const PsfPlan plan = plan_psf(optics, wavelength_m, std::nullopt, 1.0);

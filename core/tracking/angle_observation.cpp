@@ -63,7 +63,7 @@ std::string_view fault_of(const AngleObservation& o) {
   if (o.time.ns > longest_ns || o.time.ns < -longest_ns) return "the time is out of range";
   if (!finite(o.sensor_m) || norm(o.sensor_m) > 1e12) return "the sensor's position is not known";
   if (!finite(o.direction) || std::fabs(norm(o.direction) - 1) > 1e-6)
-    return "the direction is no unit vector";
+    return "the direction is not a unit vector";
   const auto& [e, c, n] = o.covariance_rad2;
   if (!std::isfinite(e) || !std::isfinite(c) || !std::isfinite(n) || !(e > 0) || !(n > 0) ||
       !(e * n - c * c > 0))

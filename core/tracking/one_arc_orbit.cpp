@@ -78,7 +78,7 @@ Outcome<std::vector<BatchFit>> fits_of(const ForceModel& forces,
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.time < b.time; });
   std::vector<OrbitState> found;
-  std::string_view reason = "the three times do not rise";
+  std::string_view reason = "the three times do not increase";
   for (const auto& three : triples(sorted)) {
     GoodingSettings gooding;
     gooding.limits = limits;

@@ -19,7 +19,7 @@ inline std::string_view fault_of_three(std::span<const AngleObservation> three) 
   for (const AngleObservation& o : three)
     if (const auto fault = fault_of(o); !fault.empty()) return fault;
   if (!(three[0].time < three[1].time && three[1].time < three[2].time))
-    return "the three times do not rise";
+    return "the three times do not increase";
   // An arc as short as its errors tells no curvature, and so no range.
   const double arc = angle_rad(three[0].direction, three[2].direction);
   if (norm(three[0].sensor_m - three[2].sensor_m) < 1e6 &&

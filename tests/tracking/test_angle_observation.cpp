@@ -67,7 +67,7 @@ TEST(AngleObservation, RefusesWhatIsNoDirection) {
   EXPECT_EQ(angle_observation(d).reason, "the covariance is not positive definite");
   d = ground_detection();
   d.corrected_ra_rad = NAN;
-  EXPECT_EQ(angle_observation(d).reason, "the direction is no unit vector");
+  EXPECT_EQ(angle_observation(d).reason, "the direction is not a unit vector");
   d = ground_detection();
   d.sensor_position_m.x = INFINITY;
   EXPECT_EQ(angle_observation(d).reason, "the sensor's position is not known");

@@ -134,11 +134,11 @@ TEST(InitialOrbit, HardCasesGiveAReason) {
   EXPECT_EQ(gooding_orbit(same).reason, "the arc vanishes: the lines of sight are the same");
   Three equal_times = coplanar;
   equal_times[1].time = equal_times[0].time;
-  EXPECT_EQ(gauss_orbit(equal_times).reason, "the three times do not rise");
+  EXPECT_EQ(gauss_orbit(equal_times).reason, "the three times do not increase");
   EXPECT_EQ(gauss_orbit(std::span(coplanar).first(2)).reason, "not three observations");
   Three broken = coplanar;
   broken[0].direction.x = NAN;
-  EXPECT_EQ(gooding_orbit(broken).reason, "the direction is no unit vector");
+  EXPECT_EQ(gooding_orbit(broken).reason, "the direction is not a unit vector");
   // A hyperbola is left out, and taken where it is allowed.
   const OrbitState fast{SimTime{}, {9e6, 0, 0}, {1e3, 11e3, 4e3}};
   const Three open = lines_from(two_body, fast, {6.2e6, 1e6, 1.1e6}, 120);
