@@ -37,8 +37,7 @@ Curve parse_curve(std::string_view text, const std::string& name) {
   double unit_m = 0.0, scale = 1.0;
   LineReader lines(text);
   const auto fail = [&](const std::string& reason, std::string_view field) {
-    throw ConfigError(name + ":" + std::to_string(lines.line()) + ": " + reason + ", got " +
-                      std::string(field));
+    throw ConfigError(at_line(name, lines.line(), reason + ", got " + std::string(field)));
   };
   while (const auto line = lines.next()) {
     const auto fields = words(line->substr(0, line->find('#')));

@@ -26,7 +26,7 @@ IersTable IersTable::read_finals2000a(const std::string& path) {
   LineReader lines(content);
   while (const auto line = lines.next()) {
     const auto fail = [&](const std::string& reason) {
-      throw ConfigError(path + ":" + std::to_string(lines.line()) + ": " + reason);
+      throw ConfigError(at_line(path, lines.line(), reason));
     };
     const std::optional<double> mjd = field(*line, 8, 15);
     if (!mjd) fail("no modified Julian date in columns 8-15 (not a finals2000A file?)");
