@@ -1,6 +1,7 @@
 #include "core/calibration/deblend.h"
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <utility>
 
@@ -8,6 +9,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t least_pixels = 3;
+constexpr double least_factor = 1.5;  // of a peak's value over a saddle's
 
 struct BlendPixel {
   int x, y;
@@ -38,18 +40,24 @@ Component component_of(std::vector<BlendPixel> pixels, float peak_snr) {
 /// Pixels joined from the highest down.
 struct Peak {
   std::vector<BlendPixel> pixels;
-  int joined_to = -1;
+  Peak* joined_to = nullptr;
   bool split = false;  // holds parts that are listed
 
-  bool stands_over(double saddle, const DeblendSettings& s) const {
-    return pixels.size() >= least_pixels && pixels[0].value >= s.factor * saddle &&
-           pixels[0].value >= saddle + s.least_rise;
+  double height() const { return pixels[0].value; }
+  bool stands_over(double saddle, double least_rise) const {
+    return pixels.size() >= least_pixels && height() >= least_factor * saddle &&
+           height() >= saddle + least_rise;
+  }
+  Peak* root() {
+    Peak* at = this;
+    while (at->joined_to) at = at->joined_to;
+    return at;
   }
 };
 
 }  // namespace
 
-std::vector<Component> deblend(const Component& component, const DeblendSettings& settings,
+std::vector<Component> deblend(const Component& component, double least_rise,
                                const std::function<double(int, int)>& value) {
   std::vector<BlendPixel> pixels;
   for (const Run& run : component.runs)
@@ -58,43 +66,34 @@ std::vector<Component> deblend(const Component& component, const DeblendSettings
   if (pixels.size() < 2 * least_pixels) return {component};
   std::ranges::stable_sort(pixels, std::greater(), &BlendPixel::value);
   const int wide = component.max_x - component.min_x + 3;
-  std::vector<int> peak_at(std::size_t(wide) * std::size_t(component.max_y - component.min_y + 3),
-                           -1);
-  std::vector<Peak> peaks;
-  const auto root = [&](int i) {
-    while (peaks[std::size_t(i)].joined_to >= 0) i = peaks[std::size_t(i)].joined_to;
-    return i;
-  };
+  const int high = component.max_y - component.min_y + 3;
+  std::vector<Peak*> peak_at(std::size_t(wide) * std::size_t(high));
+  std::deque<Peak> peaks;
   std::vector<Component> parts;
   for (const BlendPixel& p : pixels) {
     const int at = (p.y - component.min_y + 1) * wide + p.x - component.min_x + 1;
-    int here = -1;
+    Peak* here = nullptr;
     for (const int step : {-wide - 1, -wide, -wide + 1, -1, 1, wide - 1, wide, wide + 1}) {
-      const int beside = peak_at[std::size_t(at + step)];
-      if (beside < 0) continue;
-      int other = root(beside);
-      if (here < 0) here = other;
+      Peak* const beside = peak_at[std::size_t(at + step)];
+      if (!beside) continue;
+      Peak* other = beside->root();
+      if (!here) here = other;
       if (other == here) continue;
-      if (peaks[std::size_t(other)].pixels[0].value > peaks[std::size_t(here)].pixels[0].value)
-        std::swap(here, other);
-      Peak &high = peaks[std::size_t(here)], &low = peaks[std::size_t(other)];
-      if (low.split || (low.stands_over(p.value, settings) &&
-                        (high.split || high.stands_over(p.value, settings)))) {
-        for (Peak* peak : {&high, &low}) {
-          if (!peak->split && peak->stands_over(p.value, settings))
+      if (other->height() > here->height()) std::swap(here, other);
+      if (other->split || (other->stands_over(p.value, least_rise) &&
+                           (here->split || here->stands_over(p.value, least_rise)))) {
+        for (Peak* peak : {here, other}) {
+          if (!peak->split && peak->stands_over(p.value, least_rise))
             parts.push_back(component_of(peak->pixels, component.peak_snr));
           peak->split = true;
         }
-      } else if (!high.split) {
-        high.pixels.insert(high.pixels.end(), low.pixels.begin(), low.pixels.end());
+      } else if (!here->split) {
+        here->pixels.insert(here->pixels.end(), other->pixels.begin(), other->pixels.end());
       }
-      low.joined_to = here;
+      other->joined_to = here;
     }
-    if (here < 0) {
-      here = int(peaks.size());
-      peaks.emplace_back();
-    }
-    if (!peaks[std::size_t(here)].split) peaks[std::size_t(here)].pixels.push_back(p);
+    if (!here) here = &peaks.emplace_back();
+    if (!here->split) here->pixels.push_back(p);
     peak_at[std::size_t(at)] = here;
   }
   if (parts.empty()) return {component};

@@ -81,7 +81,7 @@ void StarImages::find(const CountImage& counts, double filter_px,
     if (c.pixels > most_component_px) continue;
     const auto signal = [&](int x, int y) { return measure_.signal_e(x, y); };
     const double noise_e = measure_.noise_e(c.peak_x, c.peak_y);
-    for (Component& part : deblend(c, {.least_rise = rise_of_a_star * noise_e}, signal)) {
+    for (Component& part : deblend(c, rise_of_a_star * noise_e, signal)) {
       const double light_e = measure_.light_e(part);
       bright_.emplace_back(light_e, std::move(part));
     }

@@ -63,7 +63,7 @@ class PreviewCache {
 
 std::string draw_preview(std::string_view fits) {
   const Frame frame = decode_frame(fits, "frame");
-  return encode_picture(preview(frame.counts, {.max_width = picture_columns}).picture, "png");
+  return encode_picture(preview(frame.counts, picture_columns).picture, "png");
 }
 
 struct FramePreviews::Work {

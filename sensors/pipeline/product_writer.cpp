@@ -118,7 +118,7 @@ void ProductWriter::write(const FrameProducts& f) {
                 output_.saturation ? &f.flags : nullptr);
   write_planes(f);
   if (output_.png) {
-    const auto picture = preview(f.counts, {.max_width = output_.preview_width_px});
+    const auto picture = preview(f.counts, output_.preview_width_px);
     write_picture(frame_path(number, ".png"), picture.picture);
     write_picture(frame_path(number, "-marked.png"),
                   marked_picture(picture, f.header, f.truths, f.detections));

@@ -18,7 +18,7 @@ double peak(double x, double y, double x0, double y0, double height) {
 }
 
 TEST(Deblend, SplitsTwoStarsAtTheirSaddle) {
-  const auto parts = deblend(box(30, 20), {.least_rise = 20}, [](int x, int y) {
+  const auto parts = deblend(box(30, 20), 20, [](int x, int y) {
     return 1 + peak(x, y, 9, 10, 1000) + peak(x, y, 14, 10, 300);
   });
   ASSERT_EQ(parts.size(), 2u);
@@ -28,7 +28,7 @@ TEST(Deblend, SplitsTwoStarsAtTheirSaddle) {
 }
 
 TEST(Deblend, FindsEveryOneOfFiveStars) {
-  const auto parts = deblend(box(60, 60), {.least_rise = 20}, [](int x, int y) {
+  const auto parts = deblend(box(60, 60), 20, [](int x, int y) {
     double sum = 1;
     for (int i = 0; i < 5; ++i) sum += peak(x, y, 10 + 9 * i, 12 + 7 * i, 200.0 * (i + 1));
     return sum;
@@ -38,7 +38,7 @@ TEST(Deblend, FindsEveryOneOfFiveStars) {
 
 TEST(Deblend, LeavesOneStarAndItsNoise) {
   for (const double noise : {0.0, 4.0}) {
-    const auto parts = deblend(box(30, 20), {.least_rise = 5 * noise}, [&](int x, int y) {
+    const auto parts = deblend(box(30, 20), 5 * noise, [&](int x, int y) {
       return 30 + peak(x, y, 15, 10, 500) + noise * std::sin(12.9 * x + 78.2 * y);
     });
     ASSERT_EQ(parts.size(), 1u);
@@ -47,8 +47,8 @@ TEST(Deblend, LeavesOneStarAndItsNoise) {
 }
 
 TEST(Deblend, ReturnsAPlateauAndASmallComponentAsTheyAre) {
-  EXPECT_EQ(deblend(box(40, 40), {}, [](int, int) { return 5e4; }).size(), 1u);
-  EXPECT_EQ(deblend(box(2, 2), {}, [](int x, int y) { return 1.0 + 100 * x + y; }).size(), 1u);
+  EXPECT_EQ(deblend(box(40, 40), 0, [](int, int) { return 5e4; }).size(), 1u);
+  EXPECT_EQ(deblend(box(2, 2), 0, [](int x, int y) { return 1.0 + 100 * x + y; }).size(), 1u);
 }
 
 }  // namespace
