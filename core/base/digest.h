@@ -8,7 +8,7 @@ namespace dmise {
 /// SHA-256 (FIPS 180-4) of `data`, 64 lower-case hexadecimal digits.
 std::string sha256_hex(std::string_view data);
 
-/// The same of data that come in pieces.
+/// SHA-256 of data that come in pieces.
 class Sha256 {
  public:
   Sha256();

@@ -3,12 +3,12 @@
 
 namespace dmise {
 
-/// Where a function of one number is least, and the least value that was seen.
+/// Place of a function's minimum, and the smallest value found.
 struct Least {
   double at, value;
 };
 
-/// Looks for the least of a function that has one in [low, high] to `within` of it, by golden
+/// Finds the minimum of a function that has one minimum in [low, high], to `within`, by golden
 /// section. Source: Kiefer 1953, Proc. Amer. Math. Soc. 4, 502.
 template <class Function>
 Least golden_section(const Function& of, double low, double high, double within) {

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/base/lanes.h"
 
-// Elementary functions of lanes: additions and multiplications in a fixed order.
+// Elementary functions of lanes, by additions and multiplications in a fixed order.
 namespace dmise::DMISE_SIMD {
 
 /// e^x for x in [-700, 700], relative error below 4e-16, by Taylor's series about the nearest

@@ -4,7 +4,7 @@
 namespace dmise {
 
 /// A smooth curve through points that is monotone wherever they are: cubic between them, with a
-/// continuous slope and no overshoot; constant outside. A single point is a constant, none is 0.
+/// continuous slope and no overshoot; constant outside. One point gives a constant, none gives 0.
 /// Source: Fritsch & Butland 1984, SIAM J. Sci. Stat. Comput. 5, 300, as scipy's
 /// PchipInterpolator, with its ends.
 class MonotoneCubic {

@@ -2,10 +2,10 @@
 #include "core/base/lanes.h"
 #include "core/base/rng.h"
 
-// Vectorised forms of core/base/rng.h.
+// core/base/rng.h for several pixels at a time.
 namespace dmise::DMISE_SIMD {
 
-/// Philox4x32-10 on several vectors of blocks at a time, which hides the latency of its
+/// Philox4x32-10 on several vectors of blocks at a time, to hide the latency of its
 /// multiplications. Counters are in the low halves; high halves are undefined afterwards.
 template <int Abreast>
 DMISE_INLINE void philox_rounds(const RngKey& key, U64 (&c0)[Abreast], U64 (&c1)[Abreast],

@@ -4,7 +4,8 @@
 
 namespace dmise {
 
-/// An optional value that few have: 8 bytes where there is none. Copies are of the value.
+/// An optional value for members that few objects have: it takes 8 bytes if empty. Copying copies
+/// the value.
 template <class T>
 class Rare {
  public:

@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// Adds the wall time of its own life to `seconds`.
+/// Adds the wall time from its construction to its destruction to `seconds`.
 class Stopwatch {
  public:
   using Clock = std::chrono::steady_clock;

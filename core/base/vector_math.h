@@ -3,11 +3,11 @@
 
 #include "core/base/simd_level.h"
 
-// Elementary functions of many numbers: additions, multiplications and divisions in a fixed order,
-// hence the same bytes on every processor, which vectors of the C library do not promise.
+// Elementary functions of many numbers by additions, multiplications and divisions in a fixed
+// order: the same bytes on every processor, which the C library does not promise.
 namespace dmise {
 
-/// out[i] = e^x[i], relative error below 4e-16; `x` is held within -700..700. Both spans have one
+/// out[i] = e^x[i], relative error below 4e-16; `x` is clamped to -700..700. Both spans have one
 /// size and may be the same.
 void exp_of(std::span<const double> x, std::span<double> out, SimdLevel level = best_simd_level());
 

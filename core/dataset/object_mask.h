@@ -17,22 +17,22 @@ struct ObjectMask {
   bool empty() const { return pixels.empty(); }
 };
 
-/// Share of an object's light in the image that its mask holds, at least.
+/// Least share of an object's light in the image that its mask holds.
 inline constexpr double mask_share = 0.99;
 
-/// The fewest pixels that hold `share` of the light of an object; of equally bright ones the first.
-/// Empty without light.
+/// Returns the fewest pixels that hold `share` of an object's light, the first of equally bright
+/// ones; none without light.
 ObjectMask mask_of(const ExpectedElectronImage& light, double share = mask_share);
 
-/// COCO's compressed run lengths: column by column, off and on in turn, lengths as differences from
-/// the one before the last in groups of 5 bits. Source: pycocotools, maskApi.c, rleToString.
+/// COCO's compressed run lengths: column by column, off and on in turn, each as the difference from
+/// the length two before it, in groups of 5 bits. Source: pycocotools, maskApi.c, rleToString.
 std::string coco_counts(const ObjectMask& mask);
 
-/// Signal-to-noise ratio of the best linear filter: sqrt(sum (s / sigma)^2) over all pixels, with
-/// the expected light `s` of the object and the expected noise `sigma` of a pixel [e-].
+/// Signal-to-noise ratio of the optimal linear filter: sqrt(sum (s / sigma)^2) over all pixels,
+/// with the expected light `s` of the object and the expected noise `sigma` of a pixel [e-].
 double optimal_snr(const ExpectedElectronImage& light, const ElectronImage& noise);
 
-/// Numbers of objects by pixel: 0 none, k the k-th, the brightest where masks overlap.
+/// Number of the object at each pixel: 0 none, k the k-th; the brightest where masks overlap.
 using LabelImage = Image<std::uint16_t, struct LabelCarrier>;
 
 /// Builds a label image.

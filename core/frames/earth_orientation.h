@@ -8,7 +8,7 @@ namespace dmise {
 struct Cirs {};  // celestial intermediate: GCRS turned to the CIP of date, x axis at the CIO
 struct Tirs {};  // terrestrial intermediate: CIRS turned by the Earth rotation angle
 
-/// Rotation of the Earth, of its angle ERA (IERS 2010, equation 5.15) [rad/s of UT1].
+/// Rate of the Earth rotation angle (IERS 2010, equation 5.15) [rad/s of UT1].
 inline constexpr double earth_turn_rad_per_s = 7.292115146706979e-5;
 
 /// Orientation of the Earth around one instant. Precession, nutation and polar motion are frozen at

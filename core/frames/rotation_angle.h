@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// Returns by how much a rotation turns [rad, 0..pi], accurate at every angle.
+/// Returns the angle of a rotation [rad, 0..pi], accurate at every angle.
 template <class F>
 double rotation_angle_rad(const Rotation<F, F>& turn) {
   const auto& m = turn.m;

@@ -11,7 +11,7 @@ constexpr std::size_t kinds = std::size(error_kinds);
 using Shares = std::array<double, kinds>;  // of the budget
 
 constexpr int steps = 60;
-/// Rounding of a sum of shares that is one.
+/// Allows for the rounding of a sum of shares that is one.
 constexpr double slack = 1e-12;
 
 struct Option {
@@ -27,8 +27,8 @@ bool is_no_worse(const Option& a, const Option& b) {
   return true;
 }
 
-/// The options that can be in an optimum: possible, and none as good in everything. Among equals
-/// the first, which does the least.
+/// The options that can be in an optimum: those within the budget to which no other is equal or
+/// better in everything. Among equals the first, which does the least.
 std::vector<Option> useful(const KnapsackChoice& choice, const ErrorBound& budget) {
   std::vector<Option> options;
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -88,7 +88,8 @@ class Selection {
   double cost_s_ = 0.0;
 };
 
-/// Takes back what helps least for the budget that it uses, until the rest fits.
+/// Takes other options until all fit into the budget, each time at the lowest cost for what is over
+/// it.
 void repair(Selection& s, const std::vector<std::vector<Option>>& choices) {
   while (!s.fits()) {
     double best = unbounded;
@@ -110,7 +111,7 @@ void repair(Selection& s, const std::vector<std::vector<Option>>& choices) {
   }
 }
 
-/// Exchanges one option, or two at a time, as long as that saves.
+/// Exchanges one option, or two at a time, as long as that lowers the cost.
 void improve(Selection& s, const std::vector<std::vector<Option>>& choices) {
   for (int round = 0; round < 8; ++round) {
     double most_saved_s = 0.0;

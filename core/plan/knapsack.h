@@ -21,9 +21,9 @@ struct KnapsackResult {
   double least_cost_s = 0.0;  // lower bound of the optimum
 };
 
-/// Takes one option of each choice so that errors sum up to no more than `budget` at a low cost:
-/// the multiple-choice knapsack in four dimensions. Deterministic. The last options must have no
-/// error, so that there is always a solution.
+/// Takes one option of each choice so that the errors sum up to no more than `budget` at a low
+/// cost: the multiple-choice knapsack in four dimensions. Deterministic. The last option of each
+/// choice must have no error, so that there is always a solution.
 KnapsackResult solve_knapsack(const std::vector<KnapsackChoice>& choices, const ErrorBound& budget);
 
 }  // namespace dmise

@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-/// What is not bounded is left out.
+/// Leaves out errors that have no bound.
 void write_error(JsonWriter& json, const ErrorBound& error) {
   json.begin_object();
   for (const auto& kind : error_kinds)

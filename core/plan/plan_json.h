@@ -4,10 +4,10 @@
 
 namespace dmise {
 
-/// Appends a plan as an object: budget and error by kind, cost [s] predicted and the bound below
-/// which no plan within the budget can be, and each effect with its level, and why, error and cost
-/// where it has one. `factors`: of the machine for which seconds are predicted; none: the shipped
-/// costs.
+/// Appends a plan as an object: budget and error by kind, the predicted cost and a lower bound for
+/// any plan within the budget [s], and each effect with its level and, where it has them, reason,
+/// error and cost. `factors`: of the machine for which seconds are predicted; without them by the
+/// shipped table.
 void write_plan(JsonWriter& json, const EffectPlan& plan, const CostFactors& factors = {});
 
 }  // namespace dmise

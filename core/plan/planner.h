@@ -14,7 +14,7 @@ struct PlannedEffect {
   int level = 0;
   ErrorBound error;      // of this level
   double cost_s = 0.0;   // by the shipped table
-  ErrorBound stated;     // the same, also of a level that the user forces
+  ErrorBound stated;     // likewise, also of a level that the user forces
   ErrorBound cheaper;    // error of the next lower level; zero at the lowest
   bool forced = false;   // by the user
   bool decided = false;  // among several levels
@@ -44,7 +44,7 @@ struct EffectPlan {
 EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFacts& facts,
                         const EffectSet& asked, const Accuracy& accuracy);
 
-/// The fact that decided on a level, as one short text.
+/// Returns the reason for a level in one short text.
 std::string why(const PlannedEffect& planned, const EffectPlan& plan);
 
 }  // namespace dmise

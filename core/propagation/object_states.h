@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// A time with the inputs of the motion models that do not depend on the object.
+/// A time with those inputs of the motion models that do not depend on the object.
 struct StateInstant {
   SimTime time;
   Tai tai;
@@ -18,7 +18,7 @@ struct StateInstant {
   Rotation<Gcrs, Teme> gcrs_from_teme;
 };
 
-/// Half a step of the slope before a time, the time, and half a step after it.
+/// Half a step of the slope (`slope_half_step_ns`) before a time, the time, and half a step after.
 using StateInstants = std::array<StateInstant, 3>;
 
 /// States of a population at any time, in GCRS, for all motion models.
@@ -27,15 +27,15 @@ class StateSource {
   /// `population` must outlive it.
   StateSource(const ObjectPopulation& population, Clock clock, Threads& threads);
 
-  /// Slopes are symmetric differences of SGP4 over `slope_half_step_s`, and exact for the other
-  /// models. Depends on `time` alone.
+  /// Slopes are symmetric differences of SGP4 over twice `slope_half_step_ns`, and exact for the
+  /// other models. The states depend on `time` alone.
   ObjectStates at(Tick tick, SimTime time) const;
 
   /// States of `objects`, ascending indices: equal to those of `at` to the bit. Object k of the
   /// result is `objects[k]`, also in `attitude_object`.
   ObjectStates of_some(std::span<const std::uint32_t> objects, Tick tick,
                        const StateInstants& instants) const;
-  /// `known`: orientations that need not be worked out.
+  /// `known`: orientations that need not be computed.
   StateInstants instants(SimTime time, std::span<const EarthOrientation> known = {}) const;
 
   /// Returns why object `i` has no state: one line that names it and the span of a trajectory.

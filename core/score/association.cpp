@@ -47,9 +47,9 @@ std::vector<std::vector<Pair>> possible_pairs(std::span<const TrueSource> truths
   return pairs;
 }
 
-/// The least sum over a largest one-to-one assignment: truths enter one at a time, each by the
-/// shortest augmenting path (Bellman and Ford, since paths back along taken pairs cost less than
-/// nothing).
+/// The largest one-to-one assignment with the least sum of costs: truths enter one at a time, each
+/// by the shortest augmenting path (Bellman and Ford, since the way back along a taken pair has a
+/// negative cost).
 class Assignment {
  public:
   Assignment(const std::vector<std::vector<Pair>>& pairs, std::size_t detections)

@@ -7,20 +7,20 @@
 
 namespace dmise {
 
-/// Which detections are of which truth, in one frame; indices into what was given.
+/// Which detections belong to which truth in one frame; indices into the given lists.
 struct Association {
   std::vector<std::optional<std::size_t>> detection_of_truth;
-  // Further detections of a truth that has one: it was found in pieces.
+  // Further detections of a truth that was found in pieces.
   std::vector<std::vector<std::size_t>> pieces_of_truth;
   std::vector<std::size_t> false_alarms;
 };
 
-/// A detection may be of a truth if its centroid and at least half of its line are within
-/// `gate_px` of the true trail. Of these pairs it takes, one to one, the most, and of equally many
-/// those with the least sum of squared normalised distances: across the trail over `gate_px`, along
-/// it from the centroid of its light over half its length plus `gate_px` (optimal, by shortest
-/// augmenting paths). Detections left over that may be of a truth which has one are its pieces.
-/// Truth without light takes part in none.
+/// A detection may belong to a truth if its centroid and at least half of its line are within
+/// `gate_px` of the true trail. Takes as many of these pairs as possible, one to one, and of
+/// equally many those with the least sum of squared normalised distances: across the trail over
+/// `gate_px`, along it from the centroid of its light over half its length plus `gate_px` (optimal,
+/// by shortest augmenting paths). A detection left over that may belong to a truth is a piece of
+/// it. Truth without light is paired with none.
 Association associate(std::span<const TrueSource> truths, std::span<const FoundSource> detections,
                       double gate_px);
 

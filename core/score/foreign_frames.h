@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// Columns of a table of truth, as told to users.
+/// Help text: the columns of a table of truth.
 inline constexpr const char* truth_csv_help =
     "CSV with the header file,id,x_px,y_px and, as far as known, "
     "end1_x_px,end1_y_px,end2_x_px,end2_y_px,magnitude,signal_e,ra_deg,dec_deg in any order; "
@@ -17,15 +17,16 @@ inline constexpr const char* truth_csv_help =
     "trail, also outside. signal_e: electrons in the frame. ra_deg, dec_deg: ICRS, astrometric, "
     "mid exposure";
 
-/// Reads it; `files`: the names of frames. Throws `ConfigError` "FILE:LINE: COLUMN: reason".
+/// Reads such a table; `files`: the names of frames. Throws `ConfigError`
+/// "FILE:LINE: COLUMN: reason".
 std::vector<TrueSource> read_truth_csv(const std::string& path,
                                        const std::vector<std::string>& files);
-/// The same of its text; `name`: of the file, for messages.
+/// Parses its text; `name`: of the file, for messages.
 std::vector<TrueSource> parse_truth_csv(const std::string& text, const std::string& name,
                                         const std::vector<std::string>& files);
 
-/// Detects in every FITS file of a directory (.fits .fit .fts, also with .gz or .fz), with truth
-/// from a CSV, as `dmise detect` does.
+/// Detects in every FITS file of a directory (.fits .fit .fts, also with .gz or .fz), as `dmise
+/// detect` does, and reads its truth from a CSV file.
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
                        const ReadProgress& progress, const CalibratedDetector& detector);
 

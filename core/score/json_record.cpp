@@ -26,7 +26,7 @@ const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }
 const char* name_of(MagnitudeSystem system) { return magnitude_system_name(system); }
 const char* name_of(TrackStatus status) { return track_status_name(status); }
 
-/// One of the three values of an enumeration, by its name.
+/// The value with that name of an enumeration of three.
 template <class Enum>
 Enum named(const JsonRecord& record, const char* key) {
   const std::string name = record.get<std::string>(key);

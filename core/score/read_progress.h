@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-/// Is called with the share done and the file that is being read.
+/// Called with the share done, 0..1, and the file that is being read.
 using ReadProgress = std::function<void(double, const std::string&)>;
 
 /// Shows nothing.

@@ -77,6 +77,12 @@ ScoredFrame camera_of(const JsonRecord& sensor) {
           .sigma_px = psf_sigma_px(optics, camera.number("band_centre_m"))};
 }
 
+std::optional<Site> site_of(const JsonRecord& sensor) {
+  if (!sensor.has("site")) return std::nullopt;
+  const JsonRecord site = sensor.object("site");
+  return Site{site.number("latitude_deg"), site.number("longitude_deg"), site.number("height_m")};
+}
+
 ScoreInput read_run(const std::string& directory, const ReadProgress& progress) {
   ScoreInput in{.source = directory};
   const auto file = [&](const char* name) { return directory + "/" + name; };

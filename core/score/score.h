@@ -7,7 +7,7 @@
 #include "core/score/intervals.h"
 #include "core/score/score_input.h"
 
-// Joins detections and truth. Nothing else does.
+// Joins detections and truth; no other code does.
 namespace dmise {
 
 struct ScoreSettings {
@@ -20,9 +20,9 @@ enum class Fate {
   found,
   missed,    // expected above the threshold, or unknown
   faint,     // not found, expected below the threshold
-  dark,      // enters the frame without light: in shadow, behind something
-  outside,   // no light in the frame, and no part of the trail
-  unscored,  // its frame is not there, or was not searched
+  dark,      // enters the frame without light: in shadow or hidden
+  outside,   // neither light nor a part of the trail is in the frame
+  unscored,  // its frame is missing, or was not searched
 };
 inline constexpr std::array fate_names = {"found", "missed",  "faint",
                                           "dark",  "outside", "unscored"};
@@ -82,7 +82,7 @@ struct ScoredTruth {
 
   bool is_point() const { return length_px < 2.0; }
   bool has_light() const { return fate <= Fate::faint; }
-  /// Whether it is expected above a threshold, or it is unknown what to expect.
+  /// Whether its expected SNR is above a threshold or unknown.
   bool is_above(double threshold_snr) const {
     return has_light() && (!snr || *snr >= threshold_snr);
   }
@@ -124,7 +124,7 @@ struct Score {
   std::vector<FoundSource> false_alarms;  // by sensor, frame and SNR
 };
 
-/// Depends on what the lists hold, not on their order. Throws `Error` if a frame is there twice.
+/// The result does not depend on the order of the lists. Throws `Error` if a frame is there twice.
 Score score(ScoreInput input, const ScoreSettings& settings);
 
 }  // namespace dmise

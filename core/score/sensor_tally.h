@@ -6,13 +6,13 @@
 
 namespace dmise {
 
-/// Sums up what became of a sensor's frames, truths and detections.
+/// Counts what became of a sensor's frames, truths and detections.
 class SensorTally {
  public:
   SensorTally(const std::string& sensor, const ScoreSettings& settings);
   void add(const ScoredFrame& frame);
   void add(const ScoredTruth& truth);
-  /// `scored`: its frame is there and was searched.
+  /// `scored`: its frame exists and was searched.
   void add(const FoundSource& detection, bool scored);
   /// The figures of all that was added; ends the tally.
   SensorScore finish();

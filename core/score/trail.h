@@ -24,7 +24,7 @@ class TrueTrail {
     double distance_px = 0.0;  // from the part with u in 0..1
   };
   Nearest nearest(PixelPosition place) const;
-  /// Whether the part with u in 0..1 may be within a distance: false only if it is not.
+  /// Quick test: false only if the part with u in 0..1 is not within that distance.
   bool may_be_near(PixelPosition place, double distance_px) const;
 
   double length_px() const { return arc_px_.back(); }
@@ -41,8 +41,8 @@ class TrueTrail {
   PixelPosition least_, most_;  // corners of a box around it
 };
 
-/// Where an object was at the start, the middle and the end of the exposure. The trail goes on
-/// evenly to instants at which the camera does not image the object.
+/// Returns the places of an object at the start, the middle and the end of the exposure. Places
+/// that the camera does not image are extrapolated evenly.
 std::array<PixelPosition, 3> places_of(const Truth& truth);
 
 /// Whether a place is on a pixel of the frame.

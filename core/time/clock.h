@@ -31,9 +31,8 @@ class Clock {
   /// Exact to the nanosecond. Throws `Error` beyond +-292 years from the start.
   SimTime sim_time(const Utc& utc) const;
 
-  /// Returns warnings for a run from simulation time 0 to `end`, one line each; empty when all data
-  /// are measured: leap seconds that are not yet announced, UT1 approximated by UTC and the size of
-  /// that error.
+  /// Returns warnings for a run from simulation time 0 to `end`, one line each, of leap seconds
+  /// that are not yet announced and of UT1 that is not measured, with the size of that error.
   std::vector<std::string> warnings(SimTime end) const;
 
  private:
