@@ -46,11 +46,9 @@ std::uint32_t StarBlocks::crc_of(const StarTable& s, const Column<Vec<Gcrs>>& di
                                  std::size_t block) {
   const Rows rows(block, s.size());
   std::uint32_t crc = 0;
-  const auto add = [&](const auto& column) {
+  for_stored_columns(s, direction, [&](const auto& column) {
     crc = crc32c(column.data() + rows.first, (rows.last - rows.first) * sizeof(column[0]), crc);
-  };
-  add(s.ra_rad), add(s.dec_rad), add(s.pm_ra_cosdec_rad_per_yr), add(s.pm_dec_rad_per_yr);
-  add(s.parallax_rad), add(direction), add(s.id), add(s.v_mag), add(s.bv), add(s.flags);
+  });
   return crc;
 }
 

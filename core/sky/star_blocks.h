@@ -10,6 +10,14 @@
 
 namespace dmise {
 
+/// Calls `use(column)` for the columns of stars and for their directions, in the order in which a
+/// file holds them.
+template <class Stars, class Directions, class Use>
+void for_stored_columns(Stars& s, Directions& direction, Use&& use) {
+  use(s.ra_rad), use(s.dec_rad), use(s.pm_ra_cosdec_rad_per_yr), use(s.pm_dec_rad_per_yr);
+  use(s.parallax_rad), use(direction), use(s.id), use(s.v_mag), use(s.bv), use(s.flags);
+}
+
 /// Checks stars of a mapped file when they are first looked at, block by block: a field of a large
 /// catalogue is checked without reading the rest.
 class StarBlocks {

@@ -15,17 +15,10 @@ namespace {
 constexpr double faintest_allowed_v_mag = 50.0;  // and brightest, below zero
 }
 
-StarTable table_of(StarCatalogue c) {
-  return {.epoch_jyear = c.epoch_jyear,
-          .id = std::move(c.id),
-          .ra_rad = std::move(c.ra_rad),
-          .dec_rad = std::move(c.dec_rad),
-          .pm_ra_cosdec_rad_per_yr = std::move(c.pm_ra_cosdec_rad_per_yr),
-          .pm_dec_rad_per_yr = std::move(c.pm_dec_rad_per_yr),
-          .parallax_rad = std::move(c.parallax_rad),
-          .v_mag = std::move(c.v_mag),
-          .bv = std::move(c.bv),
-          .flags = std::move(c.flags)};
+StarTable table_of(StarCatalogue catalogue) {
+  StarTable table{.epoch_jyear = catalogue.epoch_jyear};
+  for_columns([](auto& to, auto& from) { to = std::move(from); }, table, catalogue);
+  return table;
 }
 
 double faintest_filled_v_mag(std::span<const float> v_mags) {

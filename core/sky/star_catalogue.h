@@ -41,6 +41,20 @@ struct StarFields {
   bool operator==(const StarFields&) const = default;
 };
 
+/// Calls `use(column, ..)` for each column of one or several sets of stars.
+template <class Use, class... Stars>
+void for_columns(Use&& use, Stars&... stars) {
+  use(stars.id...);
+  use(stars.ra_rad...);
+  use(stars.dec_rad...);
+  use(stars.pm_ra_cosdec_rad_per_yr...);
+  use(stars.pm_dec_rad_per_yr...);
+  use(stars.parallax_rad...);
+  use(stars.v_mag...);
+  use(stars.bv...);
+  use(stars.flags...);
+}
+
 template <class T>
 using StarVector = std::vector<T>;
 

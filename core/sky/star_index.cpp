@@ -70,15 +70,7 @@ StarIndex build_star_index(StarCatalogue& c) {
     if (c.v_mag[a] != c.v_mag[b]) return c.v_mag[a] < c.v_mag[b];
     return a < b;
   });
-  reorder(c.id, order);
-  reorder(c.ra_rad, order);
-  reorder(c.dec_rad, order);
-  reorder(c.pm_ra_cosdec_rad_per_yr, order);
-  reorder(c.pm_dec_rad_per_yr, order);
-  reorder(c.parallax_rad, order);
-  reorder(c.v_mag, order);
-  reorder(c.bv, order);
-  reorder(c.flags, order);
+  for_columns([&](auto& column) { reorder(column, order); }, c);
 
   std::vector<std::uint32_t> first_star(cells_before.back() + 1, 0);
   for (const std::uint32_t one : cell) ++first_star[one + 1];

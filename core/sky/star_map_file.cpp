@@ -28,7 +28,7 @@ constexpr std::size_t alignment = 64;
 
 /// The file: this header; of each tier `first_cell` and `first_star`; the checksum of each block of
 /// stars; the problems, each ended by a line feed; then the columns of the stars in the order of
-/// `for_columns`. Each array begins at a multiple of `alignment`, with zeros before it.
+/// `for_stored_columns`. Each array begins at a multiple of `alignment`, with zeros before it.
 struct Header {
   std::array<char, 8> magic = dmise::magic;
   std::uint32_t version = star_map_version;
@@ -55,14 +55,6 @@ struct Header {
 };
 static_assert(sizeof(Header) == 128 + 16 * most_star_tiers + 8 * StarSummary::bins);
 static_assert(sizeof(Header) % alignment == 0);
-
-/// Calls `use(column)` for all columns of stars in the order in which they are stored.
-template <class Map, class Use>
-void for_columns(Map& map, Use&& use) {
-  auto& s = map.stars;
-  use(s.ra_rad), use(s.dec_rad), use(s.pm_ra_cosdec_rad_per_yr), use(s.pm_dec_rad_per_yr);
-  use(s.parallax_rad), use(map.index.direction), use(s.id), use(s.v_mag), use(s.bv), use(s.flags);
-}
 
 std::size_t padding(std::size_t bytes) { return (alignment - bytes % alignment) % alignment; }
 
@@ -122,7 +114,7 @@ Header header_of(const StarMap& map, const StarSource& source, const Tables& tab
   }
   for_tables(map, tables, [&](std::string_view piece) { h.columns_at += piece.size(); });
   h.file_bytes = h.columns_at;
-  for_columns(map, [&](const auto& column) {
+  for_stored_columns(map.stars, map.index.direction, [&](const auto& column) {
     with_padding(bytes_of(column), [&](std::string_view piece) { h.file_bytes += piece.size(); });
   });
   h.crc = crc32c(&h, sizeof h);
@@ -223,7 +215,8 @@ void write_star_map(const std::string& path, const StarMap& map, const StarSourc
   const auto append = [&](std::string_view piece) { file.append(piece); };
   append({reinterpret_cast<const char*>(&header), sizeof header});
   for_tables(map, tables, append);
-  for_columns(map, [&](const auto& column) { with_padding(bytes_of(column), append); });
+  for_stored_columns(map.stars, map.index.direction,
+                     [&](const auto& column) { with_padding(bytes_of(column), append); });
   file.finish();
 }
 
@@ -249,7 +242,8 @@ OpenedStarMap open_star_map(const std::string& path) {
   Column<std::uint32_t> block_crc;
   Reader tables(file, sizeof h), columns(file, h.columns_at);
   bool whole = read_tables(h, tables, map, block_crc) && tables.left() == columns.left();
-  for_columns(map, [&](auto& column) { whole = whole && columns.take(column, h.stars); });
+  for_stored_columns(map.stars, map.index.direction,
+                     [&](auto& column) { whole = whole && columns.take(column, h.stars); });
   if (!whole || columns.left() != 0 || !is_sound(map.index, map.stars.size()))
     fail("the index is wrong");
   map.blocks = std::make_shared<const StarBlocks>(map.stars, map.index.direction,
