@@ -33,7 +33,7 @@ struct DatasetOptions {
   bool check = false, force = false;
 };
 
-/// Two whole numbers >= 0 with `between` between them.
+/// Parses two whole numbers >= 0 that are separated by `between`.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> two_numbers(const std::string& text,
                                                                    std::string_view between) {
   const std::size_t at = text.find(between);
@@ -50,7 +50,7 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> two_numbers(const std::st
   return std::pair(*first, *second);
 }
 
-/// The archives that a task makes: the i-th of every n.
+/// A task of a job array: it makes the i-th of every n archives.
 struct Task {
   std::uint64_t number = 1, count = 1;
   bool makes(std::size_t shard) const { return shard % count == number - 1; }
@@ -83,8 +83,8 @@ DatasetPlan plan_of(const DatasetOptions& options, const std::string& scenario_t
   return plan;
 }
 
-/// SHA-256 of what determines the bytes. Presets and catalogues are known by what some of the seeds
-/// take.
+/// SHA-256 of what determines the bytes. Presets and catalogues are found by drawing some of the
+/// seeds.
 std::string digest_of(const DatasetPlan& plan, const ScenarioDraws& draws) {
   constexpr std::uint64_t most_samples = 200;
   Sha256 sha;
@@ -119,7 +119,7 @@ void check_output(const Scenario& scenario, std::uint64_t seed) {
                       std::to_string(seed) + ")");
 }
 
-/// Reads the scenario of every seed of this task, so that none fails on the way.
+/// Reads the scenario of every seed of this task, so that errors are found before the first frame.
 void check_seeds(const DatasetPlan& plan, const Task& task, const ScenarioDraws& draws,
                  SampleMaker& maker) {
   Progress progress;
@@ -135,7 +135,7 @@ void check_seeds(const DatasetPlan& plan, const Task& task, const ScenarioDraws&
   }
 }
 
-/// The samples of a task that are still to be made, and the putting together of its archives.
+/// The samples of a task that are still to be made; assembles its archives.
 class TaskWork {
  public:
   TaskWork(const DatasetPlan& plan, const Task& task, const DatasetDirectory& directory)
@@ -153,7 +153,7 @@ class TaskWork {
   std::uint64_t seeds() const { return seeds_; }
   const std::vector<std::uint64_t>& to_make() const { return to_make_; }
 
-  /// Assembles archives, in their order, whose samples are there.
+  /// Assembles, in their order, the archives whose samples exist.
   void assemble() {
     while (next_ < shards_.size()) {
       OpenShard& open = shards_[next_];
@@ -167,7 +167,7 @@ class TaskWork {
  private:
   struct OpenShard {
     std::size_t shard;
-    std::uint64_t seed, last;  // the first that may be missing, the last one
+    std::uint64_t seed, last;  // the first seed whose sample may be missing, and the last
   };
   const DatasetDirectory& directory_;
   std::uint64_t seeds_ = 0;

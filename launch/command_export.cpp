@@ -48,7 +48,7 @@ ProductKind kind_of(const ExportOptions& options, const ExportFormat& format) {
   return kind;
 }
 
-/// Path of a catalogue that a scenario names, seen from here.
+/// Path of a catalogue that a scenario names.
 std::string path_of(const std::string& named) {
   const std::string path = named == "gpredict" ? find_catalogue("satellites.dat") : named;
   if (path.empty() || !path_exists(path))

@@ -73,8 +73,8 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The terminal while a live table is on it: another screen, no echo, each key at once. As it was
-/// before when this ends.
+/// The terminal while it shows a live table: alternate screen, no echo, keys without Enter. The
+/// destructor restores it.
 class LiveTerminal {
  public:
   LiveTerminal() {
@@ -101,7 +101,7 @@ class LiveTerminal {
       layout.columns = size.ws_col, layout.rows = size.ws_row;
     return layout;
   }
-  /// Each line replaces what stood there, so that nothing flickers.
+  /// Each line overwrites the old one, so that nothing flickers.
   void show(const std::string& text) const {
     std::string screen = "\x1b[H";
     for (const char c : text) screen += c == '\n' ? std::string("\x1b[K\n") : std::string(1, c);
@@ -124,7 +124,7 @@ class LiveTerminal {
   bool keys_ = false;
 };
 
-/// Shows the run until it ends, q, Ctrl-C, or `lost_after_s` without an answer.
+/// Shows the run until it ends, q or Ctrl-C is pressed, or no answer comes for `lost_after_s`.
 void watch(const StatusOptions& options, const Security& security, const RunStatus& status) {
   constexpr double lost_after_s = 10.0;
   stop_signal();

@@ -26,7 +26,7 @@ void add_view_command(CLI::App& app) {
                       "also see truth, also control the clock");
   command->add_flag(
       "--truth", options->truth,
-      "show truth beside detections to whoever may see it; with keys gateway.key must "
+      "show truth beside detections to viewers that may see it; with keys gateway.key must "
       "be one of `dmise keygen --truth`");
   command->add_flag("--no-control", options->no_control, "viewers cannot control the clock");
   command->callback([options] { become(gateway_command(*options)); });

@@ -63,7 +63,7 @@ bool wanted(const Pass& pass, const VisibleOptions& options) {
          pass.least_sun_elevation_rad < *options.night_deg * deg;
 }
 
-/// Prints the first few notes; `where` says where to find the others.
+/// Prints the first few notes; `where`: end of the line about the others.
 void print_notes(const std::vector<std::string>& notes, const char* where) {
   constexpr std::size_t most = 5;
   for (std::size_t k = 0; k < std::min(most, notes.size()); ++k) print_note(notes[k]);

@@ -36,7 +36,7 @@ std::string head(const DatasetPlan& plan) {
 constexpr std::size_t any_size = std::size_t(1) << 40;  // of a file
 constexpr std::string_view image_mark = "image ", annotation_mark = "annotation ";
 
-/// A file that is written whole, its digest and its size.
+/// A file that is written atomically, with its digest and size.
 class DigestedFile {
  public:
   explicit DigestedFile(const std::string& path) : file_(path) {}
@@ -92,7 +92,7 @@ void DatasetDirectory::clear() const {
 
 void DatasetDirectory::begin() const {
   make_directories(path_ + "/parts");
-  const auto starting = lock("start");  // tasks of an array begin together
+  const auto starting = lock("start");  // tasks of a job array begin together
   if (!starting || path_exists(part("plan.json"))) return;
   write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
   write_file_whole(part("plan.json"), head(plan_) + "}\n");
@@ -126,7 +126,7 @@ void DatasetDirectory::write_sample(std::uint64_t seed,
       lines += std::string(annotation_mark) + annotation + "\n";
   }
   write_file_whole(sample_part(seed, ".coco"), lines);
-  write_file_whole(sample_part(seed, ".tar"), members);  // last: the sample is there
+  write_file_whole(sample_part(seed, ".tar"), members);  // last: it marks the sample as complete
 }
 
 void DatasetDirectory::assemble(std::size_t shard) const {

@@ -10,12 +10,12 @@
 
 namespace dmise {
 
-/// What a data set holds: seeds first..last, a fixed number of them in each archive.
+/// Content of a data set: seeds first..last, a fixed number of them in each archive.
 struct DatasetPlan {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::uint64_t seeds_per_shard = 100;
   std::string scenario_text;
-  std::string digest;  // of all that determines its bytes
+  std::string digest;  // of everything that determines its bytes
 
   std::size_t shards() const { return std::size_t((last_seed - first_seed) / seeds_per_shard + 1); }
   std::uint64_t first_of(std::size_t shard) const { return first_seed + shard * seeds_per_shard; }
@@ -25,7 +25,7 @@ struct DatasetPlan {
 };
 
 /// The directory of a data set: dataset-NNNNNN.tar, coco.json, scenario.yaml and, when all is done,
-/// dataset.json. What is under way lies in parts/: samples, each whole or not there, from which
+/// dataset.json. Work in progress is in parts/: samples, each complete or missing, from which
 /// archives are put together. Several processes may work on different archives.
 class DatasetDirectory {
  public:
@@ -37,18 +37,18 @@ class DatasetDirectory {
   Content content() const;
   /// Removes a data set.
   void clear() const;
-  /// Notes the plan, so that others know whether they continue it.
+  /// Writes the plan, by which other processes see whether they continue it.
   void begin() const;
-  /// Held by who works on some of the archives; none if another process does.
-  std::optional<FileLock> lock(const std::string& part) const;
+  /// Locks a part of the work; empty if another process holds it.
+  std::optional<FileLock> lock(const std::string& name) const;
 
   bool has_shard(std::size_t shard) const;
   bool has_sample(std::uint64_t seed) const;
-  /// Leaves a sample, whole or not at all.
+  /// Writes a sample, complete or not at all.
   void write_sample(std::uint64_t seed, const std::vector<SampleFrame>& frames) const;
   /// Puts an archive together from its samples, which are then removed.
   void assemble(std::size_t shard) const;
-  /// Writes coco.json and dataset.json if all archives are there. Returns how many are missing.
+  /// Writes coco.json and dataset.json if all archives exist. Returns the number of missing ones.
   std::size_t finish() const;
 
  private:

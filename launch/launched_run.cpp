@@ -58,7 +58,7 @@ class Launch {
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
   }
 
-  /// Shows what was until Ctrl-C, where somebody watches.
+  /// Keeps the live view until Ctrl-C, on a terminal.
   void keep_view() {
     if (!options_.view || !isatty(STDOUT_FILENO) || stop_signal().is_set() || !view_.poll()) return;
     print_note("the live view stays until Ctrl-C");
@@ -146,7 +146,7 @@ class Launch {
     }
   }
 
-  /// The gateway is no process of the run: neither its failure nor its end means anything to it.
+  /// The gateway is not a process of the run, which goes on if the gateway fails or ends.
   void start_view(const std::string& master) {
     const std::string tokens = options_.keys.empty() ? "" : directory_.path() + "/logs/view.tokens";
     if (!tokens.empty()) operator_token_ = make_view_tokens(tokens);

@@ -17,8 +17,9 @@ struct LaunchOptions {
   bool view_truth = false;                   // also its truth
 };
 
-/// Runs a scenario as a process per node, until it is complete and nobody views it any more. Throws
-/// `ConfigError` for options and scenarios that cannot run, `Error` if the run fails.
+/// Runs a scenario as a process per node until it is complete and, with a view on a terminal, until
+/// Ctrl-C. Throws `ConfigError` for options and scenarios that cannot run, `Error` if the run
+/// fails.
 void launch(const LaunchOptions& options);
 
 }  // namespace dmise

@@ -47,6 +47,6 @@ struct LockSight {
 bool has_ended(const LockHolder& holder, const LockHolder& self, const LockSight& sight);
 
 constexpr double lock_beat_s = 5.0;     // interval at which a holder touches its lock
-constexpr double lock_silent_s = 60.0;  // silence after which a holder on another host
+constexpr double lock_silent_s = 60.0;  // silence after which a holder on another host has ended
 
 }  // namespace dmise

@@ -6,8 +6,7 @@
 
 namespace dmise {
 
-/// Prints a line "note: TEXT" on stderr without control characters, because names in it come from
-/// files.
+/// Prints a line "note: TEXT" on stderr, as `printable`: names in it come from files.
 inline void print_note(const std::string& text) {
   std::fprintf(stderr, "note: %s\n", printable(text, 4000).c_str());
 }

@@ -13,7 +13,7 @@ struct PassList {
   const Clock& clock;
   const std::vector<MeanElements>& elements;
   const std::vector<Pass>& passes;  // in order of output
-  bool tells_excluded = false;      // in a column of its own
+  bool tells_excluded = false;      // in a separate column
 };
 
 /// Table for display: at most `rows` passes, 0 for all.

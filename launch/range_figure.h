@@ -10,7 +10,7 @@ namespace dmise {
 
 struct RangeFigureOptions {
   bool dark = false;                      // objects in the Earth's shadow instead of sunlit ones
-  std::optional<double> night_below_rad;  // only while the Sun is below this at the site
+  std::optional<double> night_below_rad;  // only while the Sun is below this elevation at the site
 };
 
 /// Range against time of all sunlit objects in a sensor's field: Figure 5 of the DMISE-GHOST paper.

@@ -22,7 +22,7 @@ struct RunOutcome {
 void write_run_record(const RunDirectory& directory, const Scenario& scenario,
                       const RunOutcome& outcome);
 
-/// Writes index.html, the report of the run; says so if it can't be written. `pixels`: as in
+/// Writes index.html, the report of the run; prints a note if it can't. `pixels`: as in
 /// `write_report`.
 void write_index_page(const RunDirectory& directory, bool pixels = true);
 bool has_index_page(const RunDirectory& directory);

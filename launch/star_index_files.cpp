@@ -36,7 +36,7 @@ constexpr const char* deep_stars_name = "deepstars.dat";
 constexpr std::string_view deep_stars_sha256 =
     "136301c017094044d24b74711eeb3d693e908ec6d31c0f217a05565fb4704a00";
 
-/// Runs a program and returns what it wrote on its standard error; none if it ended with 0.
+/// Runs a program and returns the first line of its standard error; empty if it exited with 0.
 std::string failure_of(std::vector<std::string> command) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::strerror(errno);
@@ -71,8 +71,8 @@ std::string directory_for(const std::string& to) {
   return data_directory();
 }
 
-/// Content of deepstars.dat: what lies in the directory, unless it is told from where, else
-/// fetched.
+/// Content of deepstars.dat: of the file in the directory, if `from` is empty and it exists, else
+/// of one that is fetched.
 std::string deep_stars(const std::string& directory, const std::string& from) {
   const std::string kept = directory + "/" + deep_stars_name;
   if (from.empty() && access(kept.c_str(), R_OK) == 0) return read_text_file(kept);
@@ -80,17 +80,17 @@ std::string deep_stars(const std::string& directory, const std::string& from) {
       failure_of({home_directory() + "/launch/setup/fetch-tycho2.sh", directory, from});
   if (!why.empty()) throw ConfigError(why);
   std::string content = read_text_file(kept);
-  std::error_code ignored;  // then it only takes room
+  std::error_code ignored;  // if it stays, it only takes space
   fs::remove(kept, ignored);
   return content;
 }
 
-/// What a file was made of, as the cache of catalogues tells it.
+/// Checksum and size of a source, as the cache of catalogues uses them.
 StarSource source_of(std::string_view bytes) {
   return {crc32c(bytes.data(), bytes.size()), bytes.size()};
 }
 
-/// Read as it lies there if it is not compressed: a catalogue may be larger than the memory.
+/// Content of a catalogue's file, mapped if it is not compressed: it may be larger than the memory.
 struct CatalogueBytes {
   explicit CatalogueBytes(const std::string& path) : file(path) {
     const auto bytes = file.bytes();

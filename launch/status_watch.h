@@ -8,22 +8,22 @@
 
 namespace dmise {
 
-/// The health of a run's nodes over time, from one answer of its time-master after another, as a
+/// Follows the health of a run's nodes through the answers of its time-master, and shows it as a
 /// table for a terminal.
 class StatusWatch {
  public:
   struct Layout {
-    int columns = 80, rows = 24;  // of the terminal; rows that do not fit are counted
+    int columns = 80, rows = 24;  // of the terminal; of nodes beyond, the number is shown
     bool colours = false;
   };
 
-  /// `now_s`: when it was answered, seconds of any clock.
+  /// `now_s`: time of the answer, seconds of any clock.
   void take(const RunStatus& status, double now_s);
   /// The time-master did not answer at `now_s`, and why.
   void miss(const std::string& reason, double now_s);
 
   const RunStatus& status() const { return status_; }
-  /// Seconds without an answer; 0 if the last one was answered.
+  /// Seconds without an answer; 0 if the last question was answered.
   double silent_s() const { return silent_s_; }
 
   /// Lines with "\n", of at most `columns` characters. Text of other processes is `printable`.
@@ -34,8 +34,8 @@ class StatusWatch {
     std::deque<std::pair<double, Tick>> done;  // of the last seconds
     bool alive = true;
     std::uint64_t incarnation = 1;
-    int gaps = 0;            // times that it was lost or replaced
-    std::string last_error;  // what happened last, and when
+    int gaps = 0;            // how often it was lost or replaced
+    std::string last_error;  // the last of these, and when
   };
   double rate(const History& node) const;
 
@@ -45,7 +45,7 @@ class StatusWatch {
   std::string silence_;
 };
 
-/// Whether to colour: on a terminal that can, unless NO_COLOR says no (no-color.org).
+/// Whether to use colours: on a terminal that has them, unless NO_COLOR is set (no-color.org).
 bool wants_colours(bool terminal, const char* no_color, const char* term);
 
 }  // namespace dmise

@@ -15,7 +15,7 @@ struct ChosenNetwork {
   SurveySummary summary;  // of the chosen sites and of what is in orbit
 };
 
-/// All that a survey tells. The references must outlive it.
+/// Results of a survey. The references must outlive it.
 struct SurveyReport {
   const Scenario& scenario;
   const Clock& clock;

@@ -53,7 +53,7 @@ void check_shells(const std::vector<double>& limits_km) {
       throw ConfigError("--shells: must be above 0 and ascend");
 }
 
-/// All that the survey of one sensor depends on, in a line.
+/// Everything that the survey of one sensor depends on, in one line.
 std::string head_of(const Scenario& scenario, const SensorConfig& sensor,
                     const SurveyCommand& command, const DetectionModel& model) {
   Scenario one = scenario;
@@ -84,7 +84,7 @@ std::vector<MapMark> marks_of(const std::vector<SensorConfig>& sensors) {
   return marks;
 }
 
-/// One survey from its files or its sensors, to its products.
+/// One survey, from files of an earlier call or from its sensors, to its products.
 class Survey {
  public:
   explicit Survey(const SurveyCommand& command)

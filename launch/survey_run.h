@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// What `dmise survey` is asked for.
+/// Options of `dmise survey`.
 struct SurveyCommand {
   std::string scenario, out = "out/survey";
   std::string optimise;  // "sites=K"; empty: no choice of sites
@@ -19,9 +19,9 @@ struct SurveyCommand {
   int threads = 2;
 };
 
-/// Surveys the scenario, or what is missing of its survey in `out`; writes the products and prints
-/// the tables or JSON. Throws `ConfigError` for what the scenario or the options have wrong, before
-/// a directory is made.
+/// Surveys the scenario, or completes its survey in `out`; writes the products and prints tables or
+/// JSON. Throws `ConfigError` for errors in the scenario or the options, before a directory is
+/// made.
 void run_survey(const SurveyCommand& command);
 
 }  // namespace dmise

@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// What the gateway that shows a run is told.
+/// Options of the gateway that shows a run.
 struct ViewOptions {
   std::string master;                  // address of the time-master
   std::string products;                // directory of the run; empty: no previews of frames
@@ -23,7 +23,7 @@ std::vector<std::string> gateway_command(const ViewOptions& options);
 /// Writes a file of new tokens that only this user may read, and returns the operator's.
 std::string make_view_tokens(const std::string& path);
 
-/// The URL that the gateway announced; empty if it has not yet.
+/// The URL that the gateway has announced in a file; empty if it has not yet.
 std::optional<std::string> announced_url(const std::string& path);
 
 }  // namespace dmise

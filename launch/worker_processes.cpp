@@ -20,7 +20,7 @@
 namespace dmise {
 namespace {
 
-/// In memory that all processes share.
+/// State of the work, in memory that all processes share.
 struct Board {
   std::atomic<std::size_t> next{0}, done{0};
   std::atomic<int> failures{0};
@@ -68,7 +68,7 @@ class SharedBoard {
   _exit(0);
 }
 
-/// Child processes; whatever is left of them ends with this object.
+/// Child processes; those still running are killed with this object.
 class Children {
  public:
   ~Children() {
@@ -121,7 +121,7 @@ WorkOutcome work_in_processes(std::size_t items, int workers,
         outcome.failure = board->failure;
         outcome.is_config_error = board->is_config_error;
       } else if (WIFSIGNALED(*status)) {
-        // Ctrl-C reaches all processes of a terminal: this one hears of it too.
+        // Ctrl-C is sent to all processes of a terminal, also to this one.
         const int signal = WTERMSIG(*status);
         if (signal == SIGINT || signal == SIGTERM) outcome.interrupted = true;
         outcome.failure = "a worker was ended by signal " + std::to_string(signal) +
