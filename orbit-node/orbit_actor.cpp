@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::int64_t look_every_ns = 60'000'000'000;  // for absent objects
+constexpr std::int64_t check_every_ns = 60'000'000'000;  // for absent objects
 
 }  // namespace
 
@@ -20,7 +20,7 @@ OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation p
       publishes_states_(scenario.network.publish_states || scenario.nodes_take_states()),
       population_(std::move(population)),
       source_(population_, std::move(clock), threads),
-      told_(population_.roster.objects.size()) {}
+      reported_(population_.roster.objects.size()) {}
 
 std::vector<std::string> OrbitActor::produces() const {
   if (!publishes_states_) return {roster_topic};
@@ -39,17 +39,17 @@ std::vector<Message> OrbitActor::resume(Tick tick, std::span<const Message>) {
   return rosters(tick);
 }
 
-bool OrbitActor::is_looked_at(Tick tick) const {
-  const Tick every = std::max<Tick>(1, look_every_ns / tick_length_.ns);
-  return tell_ && (tick % every == 0 || tick == last_tick_);
+bool OrbitActor::is_checked(Tick tick) const {
+  const Tick every = std::max<Tick>(1, check_every_ns / tick_length_.ns);
+  return report_ && (tick % every == 0 || tick == last_tick_);
 }
 
 std::vector<Message> OrbitActor::step(Tick tick, std::span<const Message>) {
   std::vector<Message> messages;
   if (tick == 0) messages = rosters(tick);
-  if (publishes_states_ || is_looked_at(tick)) {
+  if (publishes_states_ || is_checked(tick)) {
     ObjectStates states = source_.at(tick, {tick * tick_length_.ns});
-    tell_absent(states);
+    report_absent(states);
     if (publishes_states_)
       messages.push_back({objects_topic, tick, std::make_shared<State>(std::move(states))});
   }
@@ -57,12 +57,12 @@ std::vector<Message> OrbitActor::step(Tick tick, std::span<const Message>) {
   return messages;
 }
 
-void OrbitActor::tell_absent(const ObjectStates& states) {
-  if (!tell_) return;
+void OrbitActor::report_absent(const ObjectStates& states) {
+  if (!report_) return;
   for (std::size_t i = 0; i < states.count; ++i) {
-    if (states.code[i] == 0 || told_[i]) continue;
-    told_[i] = true;
-    tell_(source_.why_absent(i, states));
+    if (states.code[i] == 0 || reported_[i]) continue;
+    reported_[i] = true;
+    report_(source_.why_absent(i, states));
   }
 }
 

@@ -26,25 +26,25 @@ class OrbitActor : public Actor {
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }
 
-  /// Calls `tell` with one line for each object without a state, at the first such tick; from the
+  /// Calls `report` with one line for each object without a state, at the first such tick; from the
   /// thread that calls `step`. An actor that publishes no states checks one tick a minute.
-  void on_absence(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
+  void on_absence(std::function<void(const std::string&)> report) { report_ = std::move(report); }
 
   const std::vector<std::string>& notes() const { return population_.notes; }
   const ObjectRoster& roster() const { return population_.roster; }
 
  private:
   std::vector<Message> rosters(Tick tick) const;
-  bool is_looked_at(Tick tick) const;
-  void tell_absent(const ObjectStates& states);
+  bool is_checked(Tick tick) const;
+  void report_absent(const ObjectStates& states);
 
   SimTime tick_length_;
   Tick last_tick_;
   bool publishes_states_;
   ObjectPopulation population_;
   StateSource source_;
-  std::function<void(const std::string&)> tell_;
-  std::vector<bool> told_;
+  std::function<void(const std::string&)> report_;
+  std::vector<bool> reported_;
   std::atomic<std::uint64_t> steps_{0};
 };
 

@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-/// Manifests go to a topic's consumers alone if there are at least so many times as many processes.
+/// Manifests go only to a topic's consumers if there are at least so many processes for each.
 constexpr std::size_t least_crowd = 8;
 
 }  // namespace

@@ -27,8 +27,8 @@ class MasterPublisher {
 
   void reply(std::string_view routing_id, const v1::MasterMessage& message);
   void refuse(std::string_view routing_id, const std::string& reason, const std::string& name);
-  /// Records a manifest, sent with the next message: to all, or to its consumers alone where they
-  /// are few.
+  /// Records a manifest, sent with the next message: to all, or only to its consumers if they are
+  /// few.
   void note(const TickTally& tally);
   /// An observer has joined a running run: only agents need to know its topics.
   void announce_observer(const std::string& name);

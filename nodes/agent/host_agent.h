@@ -11,7 +11,7 @@ struct HostAgentOptions {
   std::string master;                      // address of the time-master
   std::string bind = "tcp://127.0.0.1:0";  // nodes of the host join here; also ipc://PATH
   double join_within_s = 30.0;
-  std::string keys;  // directory of keys; empty: plain, loopback alone
+  std::string keys;  // directory of keys; empty: no encryption, loopback only
   Event* stop = nullptr;
   std::string announce_file;  // the address is written here when bound
   int announce_fd = -1;       // and here, as one line

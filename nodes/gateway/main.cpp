@@ -98,9 +98,10 @@ int main(int argc, char** argv) {
                  "directory of the run, for previews of frames that no sensor serves any more");
   app.add_option("--dashboard", options.dashboard, "directory of the built dashboard");
   app.add_option("--announce", options.announce_file, "file to write the URL to");
-  app.add_flag("--truth", options.truth,
-               "show truth beside detections to whoever may see it; with keys, the gateway's own "
-               "must be allowed to receive truth");
+  app.add_flag(
+      "--truth", options.truth,
+      "show truth beside detections to viewers that may see it; with keys, the gateway's own "
+      "must be allowed to receive truth");
   app.add_flag("--no-control", options.no_control, "viewers cannot control the clock");
   return dmise::run_program(app, flags, argc, argv, [&] { return dmise::serve(flags, options); });
 }

@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// Digest of what a message says, independent of its sender and time.
+/// Returns the digest of the content of a message, independent of its sender and time.
 inline std::uint64_t content_digest(MessageKind kind, std::string_view payload,
                                     std::string_view arrays) {
   const auto crc = [](std::string_view bytes) {

@@ -13,7 +13,7 @@ struct BrokerOptions {
       "tcp://127.0.0.1:0";    // observers subscribe here, with bounded queues (XPUB)
   int observer_queue = 1000;  // messages queued for a slow observer
   double join_within_s = 30.0;
-  std::string keys;  // directory of keys; empty: plain, loopback alone
+  std::string keys;  // directory of keys; empty: no encryption, loopback only
   Event* stop = nullptr;
 };
 

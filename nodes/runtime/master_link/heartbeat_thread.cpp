@@ -64,7 +64,7 @@ void HeartbeatThread::run() {
                                        {heartbeat_.handle(), 0, ZMQ_POLLIN, 0}};
     if (resend_) items.push_back({resend_->handle(), 0, ZMQ_POLLIN, 0});
     if (askers_) items.push_back({askers_->handle(), 0, ZMQ_POLLIN, 0});
-    // A message without an end wakes nobody.
+    // A message without an end does not end the wait.
     wait_for(items,
              (askers_ && askers_->size() > 0 ? std::min(next_beat, next_look) : next_beat) - now());
     // While this process was suspended it could not receive anything.

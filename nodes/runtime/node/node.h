@@ -14,7 +14,7 @@ struct NodeOptions {
   double join_within_s = 30.0;             // longest wait for the master's first answer
   double stop_within_s = 0.0;              // > 0: ends the process if a step lasts longer than this
                                            // after the end of the run or `stop`
-  std::string keys;                        // directory of keys; empty: plain, loopback alone
+  std::string keys;                        // directory of keys; empty: no encryption, loopback only
   std::string via;               // with keys: name of the agent, if `master` is an agent's address
   std::string name;              // in the run; default: the participant's
   bool observer = false;         // joins and leaves at any time; the clock does not wait for it

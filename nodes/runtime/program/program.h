@@ -11,7 +11,7 @@ struct CommonFlags {
   std::string name;
   std::string master;                      // address of the time-master
   std::string host = "tcp://127.0.0.1:0";  // where a node's own sockets bind
-  std::string keys;                        // directory of keys; empty: plain, loopback alone
+  std::string keys;                        // directory of keys; empty: no encryption, loopback only
   std::string via;                         // with keys: name of the agent at `master`
   std::string log_level = "info";
   std::string log_format = "text";

@@ -261,7 +261,8 @@ std::size_t Inbox::queued() const {
   return messages;
 }
 
-/// True if something is known to be published and missing, or nobody else vouches for it.
+/// Whether something is known to be published and missing, or must be requested because the
+/// manifest of what is here comes only then.
 bool Inbox::lacks_published(const Topic& topic) {
   if (topic.doubted) return topic.manifests.upper_bound(topic.complete_to) != topic.manifests.end();
   if (topic.unannounced && !topic.waiting.empty()) return true;

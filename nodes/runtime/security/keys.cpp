@@ -106,7 +106,7 @@ std::string text_of(const KeyPair& key) {
   return "public " + key.public_key + "\nsecret " + key.secret_key + "\n";
 }
 
-/// Creates a directory for its owner alone, if it is not there.
+/// Creates a directory that only its owner may use, if it does not exist.
 void make_directory(const std::string& directory) {
   if (mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST)
     throw Error(directory + ": can't be created: " + std::strerror(errno));
