@@ -37,8 +37,6 @@ Band read_filter(const YamlValue& value) {
              " (a path to a CSV file, or one of " + joined(filter_names()) + ")");
 }
 
-}  // namespace
-
 const Section& band_section() {
   static const Section section{
       "band",
@@ -52,6 +50,8 @@ const Section& band_section() {
                 "Width of the box [m], at most twice its centre; needed without a filter.")}};
   return section;
 }
+
+}  // namespace
 
 Forms band_forms() { return form::text(filter_names()) | form::map(band_section); }
 

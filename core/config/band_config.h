@@ -18,8 +18,7 @@ struct QuantumEfficiency {
 /// Reads `quantum_efficiency:`, a number or the path of a CSV file.
 QuantumEfficiency read_quantum_efficiency(const YamlValue& value);
 
-/// The keys of `band`, and the forms of its value.
-const Section& band_section();
+/// The forms of `band`.
 Forms band_forms();
 
 }  // namespace dmise

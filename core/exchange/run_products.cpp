@@ -25,14 +25,12 @@ Ellipsoid ellipsoid_of(const JsonRecord& scenario) {
 }
 
 RunSensor sensor_of(const JsonRecord& record, const Ellipsoid& ellipsoid) {
-  RunSensor sensor{.name = record.get<std::string>("name")};
-  if (record.has("site")) {
-    const JsonRecord site = record.object("site");
-    sensor.site = {site.number("latitude_deg"), site.number("longitude_deg"),
-                   site.number("height_m"), ellipsoid};
-    if (ellipsoid != wgs84) sensor.site = geodetic_from_itrs(itrs_from_geodetic(*sensor.site));
-  } else {
+  RunSensor sensor{.name = record.get<std::string>("name"), .site = site_of(record)};
+  if (!sensor.site) {
     sensor.platform = record.get<std::string>("platform");
+  } else if (ellipsoid != wgs84) {
+    sensor.site->ellipsoid = ellipsoid;
+    sensor.site = geodetic_from_itrs(itrs_from_geodetic(*sensor.site));
   }
   const ScoredFrame camera = camera_of(record);
   sensor.columns = camera.columns;

@@ -33,18 +33,13 @@ std::string text_or_empty(const JsonRecord& record, const char* key) {
 }
 
 ReportSensor sensor_of(const JsonRecord& record) {
-  ReportSensor sensor{.name = record.get<std::string>("name"),
-                      .platform = text_or_empty(record, "platform"),
-                      .camera = text_or_empty(record.object("camera"), "name"),
-                      .exposure_s = number_or(record, "exposure_s", 0.0),
-                      .cadence_s = number_or(record, "cadence_s", 0.0),
-                      .camera_facts = camera_of(record)};
-  if (record.has("site")) {
-    const JsonRecord site = record.object("site");
-    sensor.site = {site.number("latitude_deg"), site.number("longitude_deg"),
-                   site.number("height_m")};
-  }
-  return sensor;
+  return {.name = record.get<std::string>("name"),
+          .site = site_of(record),
+          .platform = text_or_empty(record, "platform"),
+          .camera = text_or_empty(record.object("camera"), "name"),
+          .exposure_s = number_or(record, "exposure_s", 0.0),
+          .cadence_s = number_or(record, "cadence_s", 0.0),
+          .camera_facts = camera_of(record)};
 }
 
 /// run.json, which a run that was killed leaves as it began it: with its digest alone.

@@ -9,6 +9,7 @@
 #include "core/products/task.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
+#include "core/score/run_files.h"
 #include "core/score/score.h"
 
 namespace dmise {
@@ -22,10 +23,6 @@ struct EffectCost {
 };
 
 struct ReportSensor {
-  /// Geodetic.
-  struct Site {
-    double latitude_deg = 0.0, longitude_deg = 0.0, height_m = 0.0;
-  };
   std::string name;
   std::optional<Site> site;
   std::string platform, camera;
