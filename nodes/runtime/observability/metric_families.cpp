@@ -13,11 +13,11 @@ using Labels = std::vector<prometheus::ClientMetric::Label>;
 /// Collects samples; samples of one name must be consecutive.
 class Builder {
  public:
-  void gauge(const char* name, const char* help, double value, Labels labels = {}) {
-    sample(MetricType::Gauge, name, help, std::move(labels)).gauge.value = value;
+  void gauge(const char* name, const char* help, auto value, Labels labels = {}) {
+    sample(MetricType::Gauge, name, help, std::move(labels)).gauge.value = double(value);
   }
-  void counter(const char* name, const char* help, double value, Labels labels = {}) {
-    sample(MetricType::Counter, name, help, std::move(labels)).counter.value = value;
+  void counter(const char* name, const char* help, auto value, Labels labels = {}) {
+    sample(MetricType::Counter, name, help, std::move(labels)).counter.value = double(value);
   }
   MetricFamilies take() { return std::move(families_); }
 
@@ -49,14 +49,13 @@ void add_node(Builder& b, const NodeStatus& node, const RunStatus& status) {
           node.alive, of);
   b.gauge("dmise_clock_held", "1 while the clock waits for the node.", holds, of);
   b.gauge("dmise_clock_node_done_tick", "Last tick that the node has done; -1 before the first.",
-          double(node.done), of);
+          node.done, of);
   b.counter("dmise_clock_node_restarts_total", "Processes of the node after its first.",
-            double(node.incarnation - 1), of);
+            node.incarnation - 1, of);
   b.counter("dmise_clock_node_frames_total", "Frames published, as last reported by the node.",
-            double(node.times.frames), of);
+            node.times.frames, of);
   b.counter("dmise_clock_node_detections_total",
-            "Detections published, as last reported by the node.", double(node.times.detections),
-            of);
+            "Detections published, as last reported by the node.", node.times.detections, of);
   add_times(b, "dmise_clock_node_seconds_total",
             "Time of the node by activity, as last reported by it.", node.times, node.name);
 }
@@ -73,8 +72,8 @@ MetricFamilies families_of_build(const std::string& program, const std::string& 
 MetricFamilies families_of(const ProcessFigures& f, double started_s) {
   Builder b;
   b.counter("process_cpu_seconds_total", "User and system time spent.", f.cpu_s);
-  b.gauge("process_resident_memory_bytes", "Memory in use.", double(f.resident_bytes));
-  b.gauge("process_open_fds", "Open file descriptors.", double(f.open_files));
+  b.gauge("process_resident_memory_bytes", "Memory in use.", f.resident_bytes);
+  b.gauge("process_open_fds", "Open file descriptors.", f.open_files);
   b.gauge("process_start_time_seconds", "Start time of the process since 1970.", started_s);
   return b.take();
 }
@@ -82,31 +81,28 @@ MetricFamilies families_of(const ProcessFigures& f, double started_s) {
 MetricFamilies families_of(const NodeFigures& f, const std::string& node) {
   Builder b;
   const Labels of{{"node", node}};
-  b.counter("dmise_node_ticks_total", "Ticks that this process has worked on.", double(f.ticks),
-            of);
-  b.gauge("dmise_node_done_tick", "Last tick done; -1 before the first.", double(f.done), of);
+  b.counter("dmise_node_ticks_total", "Ticks that this process has worked on.", f.ticks, of);
+  b.gauge("dmise_node_done_tick", "Last tick done; -1 before the first.", f.done, of);
   b.gauge("dmise_node_granted_tick", "Last tick that the clock allows; -1 before the start.",
-          double(f.granted), of);
+          f.granted, of);
   b.gauge("dmise_node_computing", "1 inside a step.", f.computing, of);
   b.gauge("dmise_node_incarnation", "Processes of this name so far, this one included.",
-          double(f.incarnation), of);
+          f.incarnation, of);
   add_times(b, "dmise_node_seconds_total", "Time of this process by activity.", f.times, node);
-  b.counter("dmise_node_frames_total", "Frames published.", double(f.times.frames), of);
-  b.counter("dmise_node_detections_total", "Detections published.", double(f.times.detections), of);
-  b.counter("dmise_node_sent_messages_total", "Messages published.", double(f.sent), of);
-  b.counter("dmise_node_sent_bytes_total", "Bytes of all messages published.", double(f.sent_bytes),
-            of);
+  b.counter("dmise_node_frames_total", "Frames published.", f.times.frames, of);
+  b.counter("dmise_node_detections_total", "Detections published.", f.times.detections, of);
+  b.counter("dmise_node_sent_messages_total", "Messages published.", f.sent, of);
+  b.counter("dmise_node_sent_bytes_total", "Bytes of all messages published.", f.sent_bytes, of);
   b.counter("dmise_node_received_messages_total", "Messages received that passed every check.",
-            double(f.received), of);
+            f.received, of);
   for (std::size_t i = 0; i < f.refused.size(); ++i)
     b.counter("dmise_node_refused_messages_total", "Messages received that failed a check.",
-              double(f.refused[i]), {{"node", node}, {"reason", std::string(name(Refusal(i)))}});
-  b.counter("dmise_node_resend_requests_total", "Requests for missing messages.",
-            double(f.resend_requests), of);
+              f.refused[i], {{"node", node}, {"reason", std::string(name(Refusal(i)))}});
+  b.counter("dmise_node_resend_requests_total", "Requests for missing messages.", f.resend_requests,
+            of);
   b.counter("dmise_node_missed_messages_total", "Messages no longer available; of an observer.",
-            double(f.missed), of);
-  b.gauge("dmise_node_queued_messages", "Messages received but not yet used.", double(f.queued),
-          of);
+            f.missed, of);
+  b.gauge("dmise_node_queued_messages", "Messages received but not yet used.", f.queued, of);
   return b.take();
 }
 
@@ -125,9 +121,9 @@ MetricFamilies families_of(const FrameFigures& f, const std::string& node) {
 
 MetricFamilies families_of(const BrokerFigures& f, const std::string&) {
   Builder b;
-  b.counter("dmise_broker_messages_total", "Messages forwarded.", double(f.messages));
+  b.counter("dmise_broker_messages_total", "Messages forwarded.", f.messages);
   b.counter("dmise_broker_refused_messages_total",
-            "Messages under another name than their sender's.", double(f.refused));
+            "Messages under another name than their sender's.", f.refused);
   return b.take();
 }
 
@@ -138,16 +134,15 @@ MetricFamilies families_of(const RunStatus& s, const std::string&) {
     b.gauge("dmise_clock_phase", "1 for the phase of the run.", phase == s.phase,
             {{"phase", phase_name(phase)}});
   b.gauge("dmise_clock_granted_tick", "Last tick that nodes may work on; -1 before the start.",
-          double(s.granted));
+          s.granted);
   b.gauge("dmise_clock_settled_tick", "Last tick that all have done; -1 before the first.",
-          double(s.settled));
-  b.gauge("dmise_clock_last_tick", "Last tick of the run.", double(s.last_tick));
+          s.settled);
+  b.gauge("dmise_clock_last_tick", "Last tick of the run.", s.last_tick);
   b.gauge("dmise_clock_tick_seconds", "Simulated length of a tick.", s.tick_length.seconds());
   b.gauge("dmise_clock_paused", "1 while the clock is paused on request.", s.paused);
-  b.gauge("dmise_clock_missing_nodes", "Expected nodes that have not joined.",
-          double(s.missing.size()));
+  b.gauge("dmise_clock_missing_nodes", "Expected nodes that have not joined.", s.missing.size());
   b.counter("dmise_clock_overruns_total", "Ticks not done when real time reached the next.",
-            double(s.overruns));
+            s.overruns);
   b.gauge("dmise_clock_worst_lag_seconds", "Largest delay behind real time.", s.worst_lag_s);
   for (const NodeStatus& node : s.nodes) add_node(b, node, s);
   return b.take();
