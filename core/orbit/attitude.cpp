@@ -13,21 +13,21 @@ namespace {
 
 /// Part of `v` perpendicular to the unit vector `axis`.
 template <class F>
-Vec<F> square_to(const Vec<F>& axis, const Vec<F>& v) {
+Vec<F> perpendicular_part(const Vec<F>& axis, const Vec<F>& v) {
   return v - axis * dot(axis, v);
 }
 
 /// Returns a unit vector perpendicular to the unit vector `axis`: the projection of `wanted`, or of
 /// the coordinate axis farthest from `axis` if that vanishes.
 template <class F>
-Vec<F> unit_square_to(const Vec<F>& axis, const Vec<F>& wanted) {
-  const Vec<F> across = square_to(axis, wanted);
-  if (norm(across) > 1e-12 * norm(wanted)) return unit(square_to(axis, unit(across)));
+Vec<F> unit_perpendicular(const Vec<F>& axis, const Vec<F>& wanted) {
+  const Vec<F> across = perpendicular_part(axis, wanted);
+  if (norm(across) > 1e-12 * norm(wanted)) return unit(perpendicular_part(axis, unit(across)));
   const double ax = std::abs(axis.x), ay = std::abs(axis.y), az = std::abs(axis.z);
   const Vec<F> other = ax <= ay && ax <= az ? Vec<F>{1, 0, 0}
                        : ay <= az           ? Vec<F>{0, 1, 0}
                                             : Vec<F>{0, 0, 1};
-  return unit(square_to(axis, other));
+  return unit(perpendicular_part(axis, other));
 }
 
 /// Rotation whose columns are the axes.
@@ -38,9 +38,9 @@ Rotation<To, From> from_axes(const Vec<To>& x, const Vec<To>& y, const Vec<To>& 
   return r;
 }
 
-/// `v` turned by `angle_rad` about the unit vector `axis` (Rodrigues).
+/// `v` rotated by `angle_rad` about the unit vector `axis` (Rodrigues).
 template <class F>
-Vec<F> turned(const Vec<F>& v, const Vec<F>& axis, double angle_rad) {
+Vec<F> rotated(const Vec<F>& v, const Vec<F>& axis, double angle_rad) {
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
 }
@@ -53,7 +53,7 @@ Vec<Gcrs> nadir_of(const AttitudeScene& scene) {
 
 Rotation<Gcrs, Body> attitude_of(const NadirAttitude&, const AttitudeScene& scene) {
   const Vec<Gcrs> z = nadir_of(scene);
-  const Vec<Gcrs> x = unit_square_to(z, scene.velocity_m_per_s);
+  const Vec<Gcrs> x = unit_perpendicular(z, scene.velocity_m_per_s);
   return from_axes<Gcrs, Body>(x, cross(z, x), z);
 }
 
@@ -61,7 +61,7 @@ Rotation<Gcrs, Body> attitude_of(const SunYawAttitude&, const AttitudeScene& sce
   const Vec<Gcrs> z = nadir_of(scene);
   const Vec<Gcrs> to_sun = scene.sun_m - scene.position_m;
   const bool sun_at_zenith = norm(cross(z, to_sun)) <= 1e-12 * norm(to_sun);
-  const Vec<Gcrs> x = unit_square_to(z, sun_at_zenith ? scene.velocity_m_per_s : to_sun);
+  const Vec<Gcrs> x = unit_perpendicular(z, sun_at_zenith ? scene.velocity_m_per_s : to_sun);
   return from_axes<Gcrs, Body>(x, cross(z, x), z);
 }
 
@@ -74,9 +74,9 @@ Rotation<Gcrs, Body> attitude_of(const SpinningAttitude& attitude, const Attitud
   const Vec<Body> axis = unit(attitude.axis);
   const double angle_rad = std::remainder(attitude.rate_rad_per_s * scene.time_s, 2 * pi);
   return attitude.gcrs_from_body *
-         from_axes<Body, Body>(turned(Vec<Body>{1, 0, 0}, axis, angle_rad),
-                               turned(Vec<Body>{0, 1, 0}, axis, angle_rad),
-                               turned(Vec<Body>{0, 0, 1}, axis, angle_rad));
+         from_axes<Body, Body>(rotated(Vec<Body>{1, 0, 0}, axis, angle_rad),
+                               rotated(Vec<Body>{0, 1, 0}, axis, angle_rad),
+                               rotated(Vec<Body>{0, 0, 1}, axis, angle_rad));
 }
 
 Quaternion between(const Quaternion& a, Quaternion b, double u) {
@@ -115,8 +115,8 @@ Rotation<Gcrs, Body> gcrs_from_body(const Attitude& attitude, const AttitudeScen
 double panel_angle_rad(const SunTrackingPanel& panel, const Vec<Body>& sun_direction) {
   if (!(norm(panel.hinge) > 0)) throw Error("attitude: a panel's hinge must not be zero");
   const Vec<Body> hinge = unit(panel.hinge);
-  const Vec<Body> normal = unit_square_to(hinge, panel.normal);
-  const Vec<Body> across = square_to(hinge, sun_direction);
+  const Vec<Body> normal = unit_perpendicular(hinge, panel.normal);
+  const Vec<Body> across = perpendicular_part(hinge, sun_direction);
   if (norm(across) <= 1e-12 * norm(sun_direction)) return 0.0;
   return std::atan2(dot(cross(hinge, normal), across), dot(normal, across));
 }
@@ -125,7 +125,7 @@ Rotation<Body, Panel> body_from_panel(const SunTrackingPanel& panel,
                                       const Vec<Body>& sun_direction) {
   const double angle_rad = panel_angle_rad(panel, sun_direction);
   const Vec<Body> hinge = unit(panel.hinge);
-  const Vec<Body> normal = turned(unit_square_to(hinge, panel.normal), hinge, angle_rad);
+  const Vec<Body> normal = rotated(unit_perpendicular(hinge, panel.normal), hinge, angle_rad);
   return from_axes<Body, Panel>(hinge, cross(normal, hinge), normal);
 }
 

@@ -20,29 +20,29 @@ Quaternion normalised(const Quaternion& q) {
   return {q.w / length, q.x / length, q.y / length, q.z / length};
 }
 
-/// Rotation by |v| about v.
-Quaternion turn(const Vec<Gcrs>& v) {
+/// Quaternion of the rotation by |v| about v.
+Quaternion rotation_by(const Vec<Gcrs>& v) {
   const double angle_rad = norm(v);
   const double s = angle_rad > 1e-12 ? std::sin(angle_rad / 2) / angle_rad : 0.5;
   return {std::cos(angle_rad / 2), v.x * s, v.y * s, v.z * s};
 }
 
-/// Inverse of `turn`, with |v| <= pi.
-Vec<Gcrs> turn_vector(const Quaternion& any) {
+/// Inverse of `rotation_by`, with |v| <= pi.
+Vec<Gcrs> rotation_vector(const Quaternion& any) {
   const Quaternion q = normalised(any);
   const Vec<Gcrs> v{q.x, q.y, q.z};
   const double sine = norm(v);
   return v * (sine > 1e-12 ? 2 * std::atan2(sine, q.w) / sine : 2.0);
 }
 
-Vec<Gcrs> turned(const Quaternion& q, const Vec<Gcrs>& v) {
+Vec<Gcrs> rotated(const Quaternion& q, const Vec<Gcrs>& v) {
   const Vec<Gcrs> axis{q.x, q.y, q.z};
   const Vec<Gcrs> t = 2.0 * cross(axis, v);
   return v + q.w * t + cross(axis, t);
 }
 
 /// Derivative of the rotation vector `v` for an angular velocity `rate`.
-Vec<Gcrs> turn_vector_slope(const Vec<Gcrs>& v, const Vec<Gcrs>& rate) {
+Vec<Gcrs> rotation_vector_rate(const Vec<Gcrs>& v, const Vec<Gcrs>& rate) {
   const double a = norm(v);
   const double c = a > 1e-4 ? (1 - a / 2 / std::tan(a / 2)) / (a * a) : 1.0 / 12;
   return rate - 0.5 * cross(v, rate) + c * cross(v, cross(v, rate));
@@ -59,21 +59,23 @@ AttitudeState attitude_state(const Attitude& attitude, const AttitudeScene& befo
   } else if (after.time_s > before.time_s) {
     const Quaternion moved = product(quaternion_of(gcrs_from_body(attitude, after)),
                                      conjugate(quaternion_of(gcrs_from_body(attitude, before))));
-    state.rate_rad_per_s = turn_vector(moved) / (after.time_s - before.time_s);
+    state.rate_rad_per_s = rotation_vector(moved) / (after.time_s - before.time_s);
   }
   return state;
 }
 
 Quaternion interpolate_attitude(double u, double tick_s, const AttitudeState& start,
                                 const AttitudeState& end) {
-  const Quaternion steady = product(turn(start.rate_rad_per_s * tick_s), start.gcrs_from_body);
+  const Quaternion steady =
+      product(rotation_by(start.rate_rad_per_s * tick_s), start.gcrs_from_body);
   const Quaternion left_over = product(end.gcrs_from_body, conjugate(steady));
-  const Vec<Gcrs> rest = turn_vector(left_over);
+  const Vec<Gcrs> rest = rotation_vector(left_over);
   const Vec<Gcrs> rest_slope =
-      turn_vector_slope(rest, end.rate_rad_per_s - turned(left_over, start.rate_rad_per_s));
+      rotation_vector_rate(rest, end.rate_rad_per_s - rotated(left_over, start.rate_rad_per_s));
   const Vec<Gcrs> part = rest * (u * u * (3 - 2 * u)) + rest_slope * (u * u * (u - 1) * tick_s);
-  return normalised(product(
-      turn(part), product(turn(start.rate_rad_per_s * (u * tick_s)), start.gcrs_from_body)));
+  return normalised(
+      product(rotation_by(part),
+              product(rotation_by(start.rate_rad_per_s * (u * tick_s)), start.gcrs_from_body)));
 }
 
 }  // namespace dmise

@@ -4,7 +4,7 @@ namespace dmise {
 
 namespace {
 
-struct Turn {
+struct ToGcrs {
   const EarthOrientation& earth;
   SimTime t;
 
@@ -23,7 +23,7 @@ struct Turn {
 }  // namespace
 
 MotionState<Gcrs> in_gcrs(const FramedState& state, const EarthOrientation& earth, SimTime t) {
-  return std::visit(Turn{earth, t}, state);
+  return std::visit(ToGcrs{earth, t}, state);
 }
 
 std::string_view describe(MotionCode code) {

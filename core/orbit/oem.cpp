@@ -83,7 +83,6 @@ class OemReader {
   void metadata(std::string_view key, std::string_view value) {
     OemSegment& s = *segment_;
     if (key == "OBJECT_NAME") s.object_name = value;
-    if (key == "OBJECT_ID") s.object_id = value;
     if (key == "CENTER_NAME" && upper_case(value) != "EARTH")
       fail("CENTER_NAME is not EARTH", value);
     if (key == "REF_FRAME") set_frame(upper_case(value));
@@ -171,13 +170,13 @@ class OemReader {
     const double t_s = seconds_between(trajectory_.reference, time);
     if (!s.time_s.empty() && t_s <= s.time_s.back()) fail("times must increase", fields[0]);
     s.time_s.push_back(t_s);
-    s.position_m.push_back(turned({value[0], value[1], value[2]}));
-    s.velocity_m_per_s.push_back(turned({value[3], value[4], value[5]}));
+    s.position_m.push_back(in_gcrs_axes({value[0], value[1], value[2]}));
+    s.velocity_m_per_s.push_back(in_gcrs_axes({value[3], value[4], value[5]}));
   }
 
   /// Rotates EME2000 to GCRS by the constant bias between them (23 mas); other frames are
   /// unchanged.
-  Vec<OemAxes> turned(const Vec<OemAxes>& v) const {
+  Vec<OemAxes> in_gcrs_axes(const Vec<OemAxes>& v) const {
     if (!declared_.eme2000) return v;
     double bias[3][3], precession[3][3], both[3][3];
     eraBp06(2451545.0, 0.0, bias, precession, both);

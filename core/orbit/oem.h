@@ -16,7 +16,6 @@ enum class OemInterpolation { linear, lagrange, hermite };
 /// manoeuvre).
 struct OemSegment {
   std::string object_name;
-  std::string object_id;
   OemFrame frame = OemFrame::gcrs;
   OemInterpolation interpolation = OemInterpolation::hermite;
   int degree = 7;

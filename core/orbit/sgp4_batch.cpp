@@ -167,7 +167,7 @@ void Sgp4Batch::append(std::span<const MeanElements> elements, Threads* threads)
       work(0, count);
     for (std::size_t k = 0; k < count; ++k) state_->add(models[k]);
   }
-  for (Group& g : state_->groups) g.make_memos();
+  for (Group& g : state_->groups) g.make_nodes();
 }
 
 Sgp4Batch::~Sgp4Batch() = default;

@@ -57,7 +57,7 @@ void Group::add(const Model& m, std::uint32_t object) {
   if (resonance == Resonance::half_day) take(half_day, m.half_day);
 }
 
-void Group::make_memos() {
+void Group::make_nodes() {
   if (resonance == Resonance::none) return;
   if (nodes.size() > 0) nodes.back() = no_node();  // its block may have gained objects
   while (nodes.size() < blocks()) nodes.add() = no_node();

@@ -66,7 +66,7 @@ struct Group {
   /// Adds object number `object`; all objects of a group have the same `group_of`.
   void add(const Model& model, std::uint32_t object);
   /// Call after the last of a series of additions.
-  void make_memos();
+  void make_nodes();
 
   std::size_t blocks() const { return deep ? far.size() : near.size(); }
   /// The first block whose first object is not before `object`.

@@ -119,10 +119,10 @@ void GrazingAir::divide_disc(double alpha) {
   whole = 0.0;
   for (int i = 0; i < levels; ++i) {
     const double area = alpha > 1e-6 ? 1.0 - std::pow((i + 0.5) / levels, 2.0 / alpha) : 1.0;
-    pile_.push_back({std::sqrt(area), area});
+    uniform_discs_.push_back({std::sqrt(area), area});
     whole += area;
   }
-  for (auto& disc : pile_) disc[1] /= whole;
+  for (auto& disc : uniform_discs_) disc[1] /= whole;
 }
 
 double GrazingAir::bending_rad(double height_m) const {
@@ -136,7 +136,7 @@ double GrazingAir::transmission(double height_m) const {
 double GrazingAir::light_past_sharp_limb(const LowSun& sun) const {
   if (sun.above_rad >= sun.radius_rad) return 1.0;
   double light = 0.0;
-  for (const auto& [radius, share] : pile_) {
+  for (const auto& [radius, share] : uniform_discs_) {
     LowSun disc = sun;
     disc.radius_rad *= radius;
     light += share * visible_fraction(disc);

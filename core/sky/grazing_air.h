@@ -43,7 +43,7 @@ class GrazingAir {
   };
   std::vector<Place> disc_;
   /// The disc as a pile of uniform ones: radius and share.
-  std::vector<std::array<double, 2>> pile_;
+  std::vector<std::array<double, 2>> uniform_discs_;
   std::vector<double> bending_rad_, transmission_;
 };
 

@@ -16,7 +16,7 @@ struct Layer {
 };
 
 /// Pressure at a height over that at the lower end of a layer.
-double falls(const Layer& layer, double geopotential_m) {
+double pressure_ratio(const Layer& layer, double geopotential_m) {
   constexpr double kelvin_per_m = 0.0341632;  // gravity over the gas constant
   const double rises_m = geopotential_m - layer.from_m;
   if (layer.kelvin_per_m == 0.0) return std::exp(-kelvin_per_m * rises_m / layer.kelvin);
@@ -36,7 +36,7 @@ double relative_density(double height_m) {
                                 {51e3, 270.65, -2.8e-3, 0.0},
                                 {71e3, 214.65, -2e-3, 0.0}}};
     for (std::size_t i = 1; i < known.size(); ++i)
-      known[i].pressure = known[i - 1].pressure * falls(known[i - 1], known[i].from_m);
+      known[i].pressure = known[i - 1].pressure * pressure_ratio(known[i - 1], known[i].from_m);
     return known;
   }();
   const double geopotential_m = 6356766.0 * height_m / (6356766.0 + height_m);
@@ -44,7 +44,7 @@ double relative_density(double height_m) {
   while (i > 0 && geopotential_m < layers[i].from_m) --i;
   const double kelvin = std::max(
       150.0, layers[i].kelvin + layers[i].kelvin_per_m * (geopotential_m - layers[i].from_m));
-  return layers[i].pressure * falls(layers[i], geopotential_m) * 288.15 / kelvin;
+  return layers[i].pressure * pressure_ratio(layers[i], geopotential_m) * 288.15 / kelvin;
 }
 
 double refractivity_at_sea(double wavelength_m) {

@@ -23,7 +23,7 @@ constexpr std::size_t airs = 64, ozones = 32;
 constexpr double darkest = -200.0;  // of logarithms
 
 /// Along a straight line, by steps that grow with the way.
-AirColumn along(double height_m, double cos_zenith) {
+AirColumn column_along(double height_m, double cos_zenith) {
   constexpr int steps = 120;
   const double r = AirColumns::earth_radius_m + height_m;
   const double top_m = std::max(AirColumns::top_m, height_m + 1.0);
@@ -50,17 +50,17 @@ const AirColumns& AirColumns::standard() {
 }
 
 AirColumns::AirColumns() {
-  column_m_ = along(0.0, 1.0).air;
+  column_m_ = column_along(0.0, 1.0).air;
   for (std::size_t i = 0; i < heights; ++i) {
     const double height_m = height_step_m * double(i);
-    AirColumn up = along(height_m, 1.0);
+    AirColumn up = column_along(height_m, 1.0);
     up.air = std::max(up.air / column_m_, 1e-12);
     up.ozone = std::max(up.ozone, 1e-30);
     log_up_.push_back({std::log(up.air), std::log(up.ozone)});
     for (std::size_t k = 0; k < angles; ++k) {
       const double v = double(k) / (angles - 1) / (1.0 + horizon);
       const double cosine = std::min(1.0, horizon * v / (1.0 - v));
-      const AirColumn to = along(height_m, cosine);
+      const AirColumn to = column_along(height_m, cosine);
       stretched_.push_back({(cosine + horizon) * to.air / column_m_ / up.air,
                             (cosine + horizon) * to.ozone / up.ozone});
     }

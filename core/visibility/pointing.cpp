@@ -17,7 +17,7 @@ Rotation<CameraFrame, Gcrs> at_direction(const Vec<Gcrs>& direction, double roll
 
 /// Rotates vectors about `axis` (unit), right-handed.
 template <class F>
-Rotation<F, F> turned(const std::array<double, 3>& axis, double angle_rad) {
+Rotation<F, F> rotation_about(const std::array<double, 3>& axis, double angle_rad) {
   const double half = 0.5 * angle_rad, s = std::sin(half);
   return rotation_of<F, F>({std::cos(half), s * axis[0], s * axis[1], s * axis[2]});
 }
@@ -56,10 +56,10 @@ struct Aim {
   Rotation<CameraFrame, Gcrs> operator()(const PointScan& p) const {
     const double angle_rad = p.rate_deg_per_s * deg * scene.time.seconds();
     if (const auto* sky = std::get_if<PointSky>(&p.start))
-      return (*this)(*sky) * turned<Gcrs>(p.axis, -angle_rad);
+      return (*this)(*sky) * rotation_about<Gcrs>(p.axis, -angle_rad);
     const auto enu_from_gcrs = enu_from_itrs(*scene.site) * scene.itrs_from_gcrs;
     return (*this)(std::get<PointHorizon>(p.start)) * enu_from_gcrs.inverse() *
-           turned<Enu>(p.axis, -angle_rad) * enu_from_gcrs;
+           rotation_about<Enu>(p.axis, -angle_rad) * enu_from_gcrs;
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointTarget& p) const {
     const auto centred = at_direction(scene.towards_target, roll_rad());
@@ -67,7 +67,7 @@ struct Aim {
     const double across = std::hypot(x, y);
     if (!(across > 0.0)) return centred;
     // The shortest turn of the axis z to (x, y, 1).
-    return turned<CameraFrame>({-y / across, x / across, 0.0}, std::atan(across)) * centred;
+    return rotation_about<CameraFrame>({-y / across, x / across, 0.0}, std::atan(across)) * centred;
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointEnu& p) const {
     const auto enu_from_gcrs = enu_from_itrs(p.origin) * scene.itrs_from_gcrs;
