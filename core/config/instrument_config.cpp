@@ -8,26 +8,6 @@ namespace {
 
 using Kind = InstrumentParameter::Kind;
 
-std::string_view meaning_of(std::string_view key) {
-  static constexpr std::pair<std::string_view, std::string_view> meanings[] = {
-      {"bias_deg", "Constant error of the pointing [deg]: right, down, roll."},
-      {"bias_arcsec", "The same [arcsec]; one of both may be given."},
-      {"drift_arcsec_per_s", "Growth of the error [arcsec/s]: right, down, roll."},
-      {"jitter_arcsec",
-       "Rms error of each exposure [arcsec]: right, down, roll, or one number for the first two."},
-      {"offset_ms", "Time by which the clock is fast at the start of the run [ms]."},
-      {"drift_ppm", "Rate by which it gains [1e-6]."},
-      {"jitter_ms", "Rms error of each reading [ms]."},
-      {"psd_hz", "Frequencies of the power spectral density [Hz], rising."},
-      {"psd_arcsec2_per_hz",
-       "One-sided density of an axis there [arcsec2/Hz]; straight between, none outside."},
-      {"sine_hz", "Frequencies of sinusoids [Hz]."},
-      {"sine_rms_arcsec", "Their rms along an axis [arcsec]."}};
-  for (const auto& [of, meaning] : meanings)
-    if (of == key) return meaning;
-  return "";
-}
-
 Forms forms_of(const InstrumentParameter& p) {
   if (p.kind == Kind::list) return form::list(form::number(0.0, p.most));
   const bool is_rms = p.kind == Kind::rms || p.kind == Kind::rms_of_axes;
@@ -42,7 +22,7 @@ const Section& section_of() {
   static const Section section = [] {
     Section made{std::string(Effect::facts.name), sentence_of(Effect::facts.what), {}};
     for (const auto& p : Effect::parameters())
-      made.keys.push_back(optional(std::string(p.key), forms_of(p), std::string(meaning_of(p.key)),
+      made.keys.push_back(optional(std::string(p.key), forms_of(p), std::string(p.meaning),
                                    std::get_if<double Instrument::*>(&p.value) ? "0" : ""));
     return made;
   }();

@@ -9,9 +9,12 @@ namespace dmise {
 std::span<const InstrumentParameter> ClockError::parameters() {
   using Kind = InstrumentParameter::Kind;
   static const InstrumentParameter table[] = {
-      {"offset_ms", 1e-3, 60000.0, Kind::number, &ClockError::offset_s},
-      {"drift_ppm", 1e-6, 1000.0, Kind::number, &ClockError::drift},
-      {"jitter_ms", 1e-3, 1000.0, Kind::rms, &ClockError::clock_rms_s}};
+      {"offset_ms", 1e-3, 60000.0, Kind::number, &ClockError::offset_s,
+       "Time by which the clock is fast at the start of the run [ms]."},
+      {"drift_ppm", 1e-6, 1000.0, Kind::number, &ClockError::drift,
+       "Rate by which it gains [1e-6]."},
+      {"jitter_ms", 1e-3, 1000.0, Kind::rms, &ClockError::clock_rms_s,
+       "Rms error of each reading [ms]."}};
   return table;
 }
 

@@ -38,6 +38,7 @@ struct InstrumentParameter {
   Kind kind = Kind::number;
   std::variant<double Instrument::*, ImageAxes Instrument::*, std::vector<double> Instrument::*>
       value;
+  std::string_view meaning;  // with the unit, a sentence
 };
 
 }  // namespace dmise

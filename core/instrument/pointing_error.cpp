@@ -11,10 +11,14 @@ namespace dmise {
 std::span<const InstrumentParameter> PointingError::parameters() {
   using Kind = InstrumentParameter::Kind;
   static const InstrumentParameter table[] = {
-      {"bias_deg", deg, 180.0, Kind::axes, &PointingError::bias_rad},
-      {"bias_arcsec", arcsec, 648000.0, Kind::axes, &PointingError::bias_rad},
-      {"drift_arcsec_per_s", arcsec, 36000.0, Kind::axes, &PointingError::drift_rad_per_s},
-      {"jitter_arcsec", arcsec, 36000.0, Kind::rms_of_axes, &PointingError::pointing_rms_rad}};
+      {"bias_deg", deg, 180.0, Kind::axes, &PointingError::bias_rad,
+       "Constant error of the pointing [deg]: right, down, roll."},
+      {"bias_arcsec", arcsec, 648000.0, Kind::axes, &PointingError::bias_rad,
+       "The same [arcsec]; one of both may be given."},
+      {"drift_arcsec_per_s", arcsec, 36000.0, Kind::axes, &PointingError::drift_rad_per_s,
+       "Growth of the error [arcsec/s]: right, down, roll."},
+      {"jitter_arcsec", arcsec, 36000.0, Kind::rms_of_axes, &PointingError::pointing_rms_rad,
+       "Rms error of each exposure [arcsec]: right, down, roll, or one number for the first two."}};
   return table;
 }
 
