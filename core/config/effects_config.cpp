@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 #include "core/base/formatted.h"
 #include "core/config/effect_list.h"
@@ -79,17 +78,10 @@ const Section& accuracy_section() {
         "not call for.",
         {optional("seconds_per_frame", form::above(0.0, 86400.0),
                   "Time of a frame [s], in place of errors.")}};
-    static constexpr std::pair<std::string_view, std::string_view> meanings[] = {
-        {"photometry_mag", "Greatest error of the brightness of a source"},
-        {"position_px", "Greatest error of the place of a source"},
-        {"background_sigma", "Greatest error of the background between sources, in its noise"},
-        {"noise", "Greatest error of the noise of a pixel"}};
     for (const auto& kind : error_kinds)
-      for (const auto& [key, meaning] : meanings)
-        if (key == kind.key)
-          made.keys.push_back(optional(kind.key, form::number(0.0, 1e6),
-                                       std::string(meaning) + " [" + kind.unit + "].",
-                                       shortest_text(standard_budget.*kind.value)));
+      made.keys.push_back(optional(kind.key, form::number(0.0, 1e6),
+                                   std::string(kind.meaning) + " [" + kind.unit + "].",
+                                   shortest_text(standard_budget.*kind.value)));
     return made;
   }();
   return section;

@@ -32,12 +32,15 @@ struct ErrorKind {
   const char* key;
   const char* unit;
   double ErrorBound::*value;
+  const char* meaning;
 };
 inline constexpr ErrorKind error_kinds[] = {
-    {"photometry_mag", "mag", &ErrorBound::photometry_mag},
-    {"position_px", "px", &ErrorBound::position_px},
-    {"background_sigma", "sigma", &ErrorBound::background_sigma},
-    {"noise", "relative", &ErrorBound::noise}};
+    {"photometry_mag", "mag", &ErrorBound::photometry_mag,
+     "Greatest error of the brightness of a source"},
+    {"position_px", "px", &ErrorBound::position_px, "Greatest error of the place of a source"},
+    {"background_sigma", "sigma", &ErrorBound::background_sigma,
+     "Greatest error of the background between sources, in its noise"},
+    {"noise", "relative", &ErrorBound::noise, "Greatest error of the noise of a pixel"}};
 
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Of an effect that must not be left out.
