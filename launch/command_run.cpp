@@ -46,15 +46,8 @@ class EmbeddedRun {
               int thread_count, Tick first_tick)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
     print_outlook(scenario, scene, make_clock(scenario));
-    NodeParts parts{scenario,
-                    scene,
-                    directory.digest(),
-                    directory.path(),
-                    threads_,
-                    [this](const std::string& line) {
-                      std::lock_guard lock(mutex_);
-                      notes_.push_back(line);
-                    }};
+    NodeParts parts{scenario,         scene,    directory.digest(),
+                    directory.path(), threads_, [this](const std::string& line) { note(line); }};
     for (const NodeKind& kind : node_kinds())
       for (const auto& node : nodes_of(kind, scenario)) {
         participants_.push_back(maker_of(kind).make(node, parts));
@@ -108,6 +101,11 @@ class EmbeddedRun {
   }
 
  private:
+  void note(const std::string& line) {
+    std::lock_guard lock(mutex_);
+    notes_.push_back(line);
+  }
+
   void make_ticks() {
     std::string failure;
     try {
@@ -122,14 +120,10 @@ class EmbeddedRun {
           },
           first_tick_);
       for (const auto* sensor : sensors_) {
-        if (const std::string evaluator = sensor->evaluator(); !evaluator.empty()) {
-          std::lock_guard lock(mutex_);
-          notes_.push_back(sensor->name() + ": drawn by " + evaluator);
-        }
-        if (const std::string renderer = sensor->renderer(); !renderer.empty()) {
-          std::lock_guard lock(mutex_);
-          notes_.push_back(sensor->name() + ": shapes drawn by " + renderer);
-        }
+        if (const std::string evaluator = sensor->evaluator(); !evaluator.empty())
+          note(sensor->name() + ": drawn by " + evaluator);
+        if (const std::string renderer = sensor->renderer(); !renderer.empty())
+          note(sensor->name() + ": shapes drawn by " + renderer);
       }
     } catch (const std::exception& e) {
       failure = e.what();

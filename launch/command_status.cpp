@@ -25,9 +25,9 @@ namespace dmise {
 namespace {
 
 struct StatusOptions {
-  std::string master, keys, reason;
+  std::string master, keys;
   bool once = false, watch = false, healthy = false;
-  Tick tick = 0;
+  ClockRequest request;  // of `dmise clock`
 };
 
 constexpr double patience_s = 2.0;
@@ -162,25 +162,23 @@ void show(const StatusOptions& options) {
   watch(options, security, status);
 }
 
+void control(const StatusOptions& options) {
+  const RunStatus status =
+      control_master(options.master, patience_s, options.request, security_of(options));
+  std::fputs(table(status).c_str(), stdout);
+}
+
 void add_pace_verb(CLI::App& clock) {
-  struct PaceCommand {
-    std::string master, keys;
-    double factor = 1.0;
-  };
-  auto options = std::make_shared<PaceCommand>();
+  auto options = std::make_shared<StatusOptions>();
+  options->request.action = ClockAction::pace;
   auto* verb = clock.add_subcommand("pace", "sets how fast simulated time passes");
   add_master_option(*verb, "master", options->master)->required();
-  verb->add_option("factor", options->factor,
+  verb->add_option("factor", options->request.factor,
                    "simulated seconds per second, 0 to 1e6; 0: as fast as possible")
       ->required()
       ->check(number_between(0.0, 1e6));
   verb->add_option("--keys", options->keys, "directory with operator.key");
-  verb->callback([options] {
-    const Security security(options->keys, operator_name);
-    const ClockRequest request{.action = ClockAction::pace, .factor = options->factor};
-    std::fputs(table(control_master(options->master, patience_s, request, security)).c_str(),
-               stdout);
-  });
+  verb->callback([options] { control(*options); });
 }
 
 }  // namespace
@@ -213,18 +211,13 @@ void add_clock_command(CLI::App& app) {
       {"abort", {ClockAction::abort, "end the run at once"}}};
   for (const auto& [name, action] : actions) {
     auto options = std::make_shared<StatusOptions>();
-    options->tick = action.first == ClockAction::step ? 1 : 0;
+    options->request = {.action = action.first, .tick = action.first == ClockAction::step ? 1 : 0};
     auto* verb = command->add_subcommand(name, action.second);
     add_master_option(*verb, "master", options->master)->required();
     verb->add_option("--keys", options->keys, "directory with operator.key");
-    verb->add_option("--tick", options->tick, "tick, or number of ticks");
-    verb->add_option("--reason", options->reason, "cause to record");
-    verb->callback([options, what = action.first] {
-      const ClockRequest request{.action = what, .tick = options->tick, .reason = options->reason};
-      std::fputs(table(control_master(options->master, patience_s, request, security_of(*options)))
-                     .c_str(),
-                 stdout);
-    });
+    verb->add_option("--tick", options->request.tick, "tick, or number of ticks");
+    verb->add_option("--reason", options->request.reason, "cause to record");
+    verb->callback([options] { control(*options); });
   }
   add_pace_verb(*command);
 }

@@ -32,14 +32,9 @@ std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts&
                      parts.threads);
 }
 
-std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {
-  return std::make_unique<PositionsEvaluator>(parts.scenario, make_clock(parts.scenario),
-                                              parts.directory);
-}
-
-std::unique_ptr<Participant> make_fusion(const std::string&, NodeParts& parts) {
-  return std::make_unique<FusionEvaluator>(parts.scenario, make_clock(parts.scenario),
-                                           parts.directory);
+template <class Evaluator>
+std::unique_ptr<Participant> make_evaluator(const std::string&, NodeParts& parts) {
+  return std::make_unique<Evaluator>(parts.scenario, make_clock(parts.scenario), parts.directory);
 }
 
 std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {
@@ -75,8 +70,8 @@ constexpr NodeMaker makers[] = {
     {orbit_node, make_orbit, no_products},
     {environment_node, make_environment, no_products},
     {any_sensor, make_one_sensor, unfinished_frame},
-    {positions_node, make_positions, unfinished_positions},
-    {fusion_node, make_fusion, unfinished_tracks},
+    {positions_node, make_evaluator<PositionsEvaluator>, unfinished_positions},
+    {fusion_node, make_evaluator<FusionEvaluator>, unfinished_tracks},
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/base/formatted.h"
 #include "core/image/chart_layout.h"
@@ -35,10 +36,6 @@ const Colour& colour_of(double detections) {
   return *colour;
 }
 
-bool same(const Colour& a, const Colour& b) {
-  return a.red == b.red && a.green == b.green && a.blue == b.blue;
-}
-
 /// Shells with light in some frame, in their order.
 std::vector<std::size_t> shown_shells(const SurveyMap& map) {
   std::vector<std::size_t> shown;
@@ -55,25 +52,20 @@ constexpr int width_px = int(2 * margin_px + panels_across * panel_wide_px + gap
 
 void draw_cells(const SurveyMap& map, std::size_t shell, PagePoint corner, ChartPen& pen) {
   for (int row = 0; row < map_rows; ++row) {
-    const auto cell = [&](int column) -> const MapCell* {
+    const auto cell_colour = [&](int column) -> std::optional<Colour> {
       const auto found =
           map.cells.find({std::uint16_t(shell), std::uint16_t(row), std::uint16_t(column)});
-      return found == map.cells.end() ? nullptr : &found->second;
+      if (found == map.cells.end()) return std::nullopt;
+      return colour_of(double(found->second.expected) * map_unit);
     };
     for (int column = 0; column < map_columns;) {
-      const MapCell* first = cell(column);
-      if (!first) {
-        ++column;
-        continue;
-      }
-      const Colour colour = colour_of(double(first->expected) * map_unit);
+      const auto colour = cell_colour(column);
       int end = column + 1;  // neighbours of one colour are one rectangle
-      for (; end < map_columns; ++end) {
-        const MapCell* next = cell(end);
-        if (!next || !same(colour_of(double(next->expected) * map_unit), colour)) break;
-      }
-      pen.rectangle({corner.x_px + column * cell_px, corner.y_px + (map_rows - 1 - row) * cell_px},
-                    (end - column) * cell_px, cell_px, colour);
+      while (end < map_columns && cell_colour(end) == colour) ++end;
+      if (colour)
+        pen.rectangle(
+            {corner.x_px + column * cell_px, corner.y_px + (map_rows - 1 - row) * cell_px},
+            (end - column) * cell_px, cell_px, *colour);
       column = end;
     }
   }

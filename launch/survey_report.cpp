@@ -65,10 +65,8 @@ std::string choice_text(const SurveyReport& report) {
       c.choice.sites.size(), c.choice.bound,
       c.choice.bound > 0.0 ? 100.0 * c.choice.best / c.choice.bound : 100.0,
       100.0 * greedy_guarantee);
-  std::vector<std::string> names;
-  for (const std::size_t s : c.choice.sites) names.push_back(printable(c.candidates[s].name));
   text += "  sites:";
-  for (const auto& name : names) text += " " + name;
+  for (const std::size_t s : c.choice.sites) text += " " + printable(c.candidates[s].name);
   text += "\n\nthe chosen network:\n" + shell_table(report.shells, c.summary.run);
   return text;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 
 namespace dmise {
 
@@ -12,28 +13,15 @@ void JsonWriter::separate() {
   need_comma_ = true;
 }
 
-JsonWriter& JsonWriter::begin_object() {
+JsonWriter& JsonWriter::open(char bracket) {
   separate();
-  text_ += '{';
+  text_ += bracket;
   need_comma_ = false;
   return *this;
 }
 
-JsonWriter& JsonWriter::end_object() {
-  text_ += '}';
-  need_comma_ = true;
-  return *this;
-}
-
-JsonWriter& JsonWriter::begin_array() {
-  separate();
-  text_ += '[';
-  need_comma_ = false;
-  return *this;
-}
-
-JsonWriter& JsonWriter::end_array() {
-  text_ += ']';
+JsonWriter& JsonWriter::close(char bracket) {
+  text_ += bracket;
   need_comma_ = true;
   return *this;
 }
@@ -48,63 +36,30 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 
 JsonWriter& JsonWriter::value(double number) {
   if (!std::isfinite(number)) throw Error("not a finite number: " + last_key_);
-  separate();
   char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, number).ptr;
-  text_.append(buffer, end);
-  return *this;
+  return raw({buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr});
 }
-
-JsonWriter& JsonWriter::value(std::int64_t number) {
-  separate();
-  text_ += std::to_string(number);
-  return *this;
-}
-
-JsonWriter& JsonWriter::value(std::uint64_t number) {
-  separate();
-  text_ += std::to_string(number);
-  return *this;
-}
-
-JsonWriter& JsonWriter::value(bool flag) { return raw(flag ? "true" : "false"); }
 
 JsonWriter& JsonWriter::value(std::string_view text) {
   separate();
   text_ += '"';
   for (const char c : text) {
-    switch (c) {
-      case '"':
-        text_ += "\\\"";
-        break;
-      case '\\':
-        text_ += "\\\\";
-        break;
-      case '\n':
-        text_ += "\\n";
-        break;
-      case '\r':
-        text_ += "\\r";
-        break;
-      case '\t':
-        text_ += "\\t";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) < 0x20) {
-          static constexpr char hex[] = "0123456789abcdef";
-          text_ += "\\u00";
-          text_ += hex[c >> 4];
-          text_ += hex[c & 15];
-        } else {
-          text_ += c;
-        }
-    }
+    if (c == '"' || c == '\\')
+      (text_ += '\\') += c;
+    else if (static_cast<unsigned char>(c) >= 0x20)
+      text_ += c;
+    else if (c == '\n')
+      text_ += "\\n";
+    else if (c == '\r')
+      text_ += "\\r";
+    else if (c == '\t')
+      text_ += "\\t";
+    else
+      text_ += formatted("\\u%04x", static_cast<unsigned>(c));
   }
   text_ += '"';
   return *this;
 }
-
-JsonWriter& JsonWriter::null() { return raw("null"); }
 
 JsonWriter& JsonWriter::raw(std::string_view text) {
   separate();

@@ -12,20 +12,20 @@ namespace dmise {
 /// NaN and infinities.
 class JsonWriter {
  public:
-  JsonWriter& begin_object();
-  JsonWriter& end_object();
-  JsonWriter& begin_array();
-  JsonWriter& end_array();
+  JsonWriter& begin_object() { return open('{'); }
+  JsonWriter& end_object() { return close('}'); }
+  JsonWriter& begin_array() { return open('['); }
+  JsonWriter& end_array() { return close(']'); }
   JsonWriter& key(std::string_view name);
   JsonWriter& value(double number);
-  JsonWriter& value(std::int64_t number);
-  JsonWriter& value(std::uint64_t number);
+  JsonWriter& value(std::int64_t number) { return raw(std::to_string(number)); }
+  JsonWriter& value(std::uint64_t number) { return raw(std::to_string(number)); }
   JsonWriter& value(int number) { return value(std::int64_t(number)); }
   JsonWriter& value(unsigned number) { return value(std::uint64_t(number)); }
-  JsonWriter& value(bool flag);
+  JsonWriter& value(bool flag) { return raw(flag ? "true" : "false"); }
   JsonWriter& value(std::string_view text);
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
-  JsonWriter& null();
+  JsonWriter& null() { return raw("null"); }
   /// Writes null where there is none.
   JsonWriter& value(const std::optional<double>& number) {
     return number ? value(*number) : null();
@@ -50,6 +50,8 @@ class JsonWriter {
   std::string take() { return std::move(text_); }
 
  private:
+  JsonWriter& open(char bracket);
+  JsonWriter& close(char bracket);
   void separate();
   std::string text_;
   std::string last_key_;

@@ -59,10 +59,10 @@ struct Threads::Pool {
 };
 
 Threads::Threads(int count) : count_(std::max(1, count)) {
-  if (count_ > 1) pool_ = new Pool(count_ - 1);
+  if (count_ > 1) pool_ = std::make_unique<Pool>(count_ - 1);
 }
 
-Threads::~Threads() { delete pool_; }
+Threads::~Threads() = default;
 
 void Threads::for_ranges(std::size_t items, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& work) {

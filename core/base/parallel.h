@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 namespace dmise {
 
@@ -11,8 +12,6 @@ class Threads {
   /// `count` threads including the caller's, >= 1; 1 starts none.
   explicit Threads(int count = 1);
   ~Threads();
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
 
   int count() const { return count_; }
 
@@ -23,7 +22,7 @@ class Threads {
 
  private:
   struct Pool;
-  Pool* pool_ = nullptr;
+  std::unique_ptr<Pool> pool_;  // null: none but the caller's thread
   int count_ = 1;
 };
 

@@ -27,15 +27,8 @@ SimdLevel best_simd_level() {
 }
 
 const char* name(SimdLevel level) {
-  switch (level) {
-    case SimdLevel::avx512:
-      return "avx512";
-    case SimdLevel::avx2:
-      return "avx2";
-    case SimdLevel::sse2:
-      break;
-  }
-  return "sse2";
+  constexpr const char* names[] = {"sse2", "avx2", "avx512"};
+  return names[static_cast<int>(level)];
 }
 
 }  // namespace dmise

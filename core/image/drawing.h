@@ -7,6 +7,8 @@ namespace dmise {
 
 struct Colour {
   std::uint8_t red = 0, green = 0, blue = 0;
+
+  bool operator==(const Colour&) const = default;
 };
 
 // Drawing on RGB pictures. (0, 0) is the centre of the first pixel; everything is clipped to the
