@@ -24,7 +24,7 @@ struct DetectOptions {
 CalibratedDetector::Result detected(const CalibratedDetector& detector, const DetectOptions& o,
                                     const Frame& frame, Threads& threads) {
   try {
-    return detector.detect(frame, {}, threads, o.blind);
+    return detector.detect(frame, threads, o.blind);
   } catch (const ConfigError&) {
     throw;
   } catch (const Error& e) {

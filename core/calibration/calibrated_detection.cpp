@@ -29,14 +29,12 @@ CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map
   if (map_) sky_.emplace(map_);
 }
 
-CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
-                                                      const DetectorSettings& settings,
-                                                      Threads& threads, bool blind) const {
-  DetectorSettings with_mask = settings;
-  if (!frame.unusable.pixels.empty()) with_mask.unusable = &frame.unusable;
+CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Threads& threads,
+                                                      bool blind) const {
+  const PixelMask* unusable = frame.unusable.pixels.empty() ? nullptr : &frame.unusable;
   const UnknownFacts& unknown = frame.header.unknown;
   const auto detected_by = [&](const FrameHeader& header) {
-    return dmise::detect(frame.counts, header, with_mask, threads, sky_ ? &*sky_ : nullptr);
+    return dmise::detect(frame.counts, header, unusable, threads, sky_ ? &*sky_ : nullptr);
   };
   Result result{.detection = {}, .header = frame.header, .solution = std::nullopt};
   if (frame.header.shutter_closed()) blind = false;  // there are no stars

@@ -28,8 +28,7 @@ class CalibratedDetector {
   /// header lacks what expecting them needs, solves the frame near the header's pointing and
   /// detects by the solution, if there is one. If `blind`, solves it without the header's pointing,
   /// and throws `Error` if there is no solution.
-  Result detect(const Frame& frame, const DetectorSettings& settings, Threads& threads,
-                bool blind = false) const;
+  Result detect(const Frame& frame, Threads& threads, bool blind = false) const;
 
  private:
   std::shared_ptr<const StarMap> map_;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/base/units.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/faint_streaks.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
@@ -71,10 +72,10 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
 }
 
 /// Relative error of the PSF outside `clipped` pixels.
-double wings_error(std::size_t clipped, double sigma_px, const DetectorSettings& settings) {
+double wings_error(std::size_t clipped, double sigma_px) {
   const double radius_in_sigmas = std::sqrt(double(clipped) / pi) / sigma_px;
-  return std::clamp(settings.wings_error * radius_in_sigmas * radius_in_sigmas,
-                    settings.least_wings_error, settings.most_wings_error);
+  return std::clamp(detection_limits::wings_error * radius_in_sigmas * radius_in_sigmas,
+                    detection_limits::least_wings_error, detection_limits::most_wings_error);
 }
 
 /// Fits the wings alone. The flux is that of the wings times a factor given by the PSF, with an
@@ -104,13 +105,13 @@ bool explains_saturation(const Scene& scene, const Source& source,
 /// A component with the pixels around it, and the fits that compare what it may be.
 class Candidate {
  public:
-  Candidate(const Scene& scene, const Component& component, const DetectorSettings& settings)
-      : scene_(scene), settings_(settings), around_(light_around(scene, component)) {
+  Candidate(const Scene& scene, const Component& component)
+      : scene_(scene), around_(light_around(scene, component)) {
     std::vector<FitPixel> all = around_.usable;
     all.insert(all.end(), around_.clipped.begin(), around_.clipped.end());
     light_ = moments(all, scene.sigma_px);
-    model_error_ = is_saturated() ? wings_error(around_.clipped.size(), scene.sigma_px, settings)
-                                  : settings.model_error;
+    model_error_ = is_saturated() ? wings_error(around_.clipped.size(), scene.sigma_px)
+                                  : detection_limits::model_error;
   }
 
   /// Whether there are enough pixels to compare fits.
@@ -146,7 +147,7 @@ class Candidate {
   /// The same, empty also if it is too faint.
   std::optional<Source> bright_source(const Trail& start, bool streak) const {
     auto bright = source(start, streak);
-    if (bright && bright->snr() < settings_.least_snr) bright.reset();
+    if (bright && bright->snr() < detection_limits::least_snr) bright.reset();
     return bright;
   }
 
@@ -183,26 +184,23 @@ class Candidate {
   }
 
   const Scene& scene_;
-  const DetectorSettings& settings_;
   Light around_;
   Trail light_;
   double model_error_ = 0.0;
 };
 
 /// The judgement where every star is known: a point or a line, whatever the shape of stars.
-std::optional<Source> judge_without_stars(const Candidate& candidate,
-                                          const DetectorSettings& settings) {
+std::optional<Source> judge_without_stars(const Candidate& candidate) {
   const TrailFit as_point = candidate.as_point(), as_line = candidate.as_line();
-  if (as_point.good(5.0) && as_point.deviance < as_line.deviance + settings.line_margin)
-    return candidate.significant_source(as_point.trails[0], settings.least_snr);
+  if (as_point.good(5.0) && as_point.deviance < as_line.deviance + detection_limits::line_margin)
+    return candidate.significant_source(as_point.trails[0], detection_limits::least_snr);
   if (!candidate.is_line(as_line)) return std::nullopt;
   const Trail& line = as_line.trails[0];
   return candidate.significant_source(line, least_streak_snr(line.length_px));
 }
 
 /// The judgement by the shape of stars.
-std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& candidate,
-                                        const DetectorSettings& settings) {
+std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& candidate) {
   const Trail& light = candidate.light();
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
@@ -214,44 +212,43 @@ std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& can
     as_star = candidate.fit(candidate.psf(), as_star.trails[0], trail_place, 8, surely_star_sigmas);
     if (as_star.good(surely_star_sigmas)) return std::nullopt;
   }
-  const bool stars_trail = star.length_px >= settings.least_difference_px;
+  const bool stars_trail = star.length_px >= detection_limits::least_difference_px;
   TrailFit as_point;
   if (stars_trail) as_point = candidate.as_point();
   const bool may_be_point =
-      stars_trail && as_point.deviance < as_star.deviance - settings.blend_margin;
+      stars_trail && as_point.deviance < as_star.deviance - detection_limits::blend_margin;
   if (as_star.good(3.5) && !may_be_point) return std::nullopt;
 
   const TrailFit as_line = candidate.as_line();
   if (may_be_point && as_point.good(5.0) &&
-      as_point.deviance < as_line.deviance + settings.blend_margin) {
+      as_point.deviance < as_line.deviance + detection_limits::blend_margin) {
     auto source = candidate.bright_source(as_point.trails[0], false);
     // A star cut by the frame's edge looks like a point.
-    if (source && !source->at_edge && point_beats_star(scene, *source, settings)) return source;
+    if (source && !source->at_edge && point_beats_star(scene, *source)) return source;
     return std::nullopt;
   }
   if (!candidate.is_line(as_line) ||
-      as_line.deviance > as_star.deviance - 2 * settings.blend_margin ||
-      as_line.deviance > candidate.deviance_as_two(star) - settings.blend_margin)
+      as_line.deviance > as_star.deviance - 2 * detection_limits::blend_margin ||
+      as_line.deviance > candidate.deviance_as_two(star) - detection_limits::blend_margin)
     return std::nullopt;
   auto source = candidate.bright_source(as_line.trails[0], true);
   if (!source) return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
-  const double tolerance_px = std::max(settings.least_difference_px, 4 * sigma_length_px);
-  if (moves_like_star(scene, *source, star, tolerance_px) || !beats_stars(scene, *source, settings))
+  const double tolerance_px = std::max(detection_limits::least_difference_px, 4 * sigma_length_px);
+  if (moves_like_star(scene, *source, star, tolerance_px) || !beats_stars(scene, *source))
     return std::nullopt;
   return source;
 }
 
 }  // namespace
 
-CompactJudgement judge_compact(const Scene& scene, const Component& component,
-                               const DetectorSettings& settings) {
-  const Candidate candidate(scene, component, settings);
+CompactJudgement judge_compact(const Scene& scene, const Component& component) {
+  const Candidate candidate(scene, component);
   if (!candidate.has_light()) return {.star_like = true};
   const Trail& light = candidate.light();
   if (scene.would_be_known(light.x_px, light.y_px, light.flux_e))
-    return {.source = judge_without_stars(candidate, settings)};
-  auto source = judge_among_stars(scene, candidate, settings);
+    return {.source = judge_without_stars(candidate)};
+  auto source = judge_among_stars(scene, candidate);
   const bool star_like = !source;
   return {std::move(source), star_like};
 }

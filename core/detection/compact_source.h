@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "core/detection/components.h"
-#include "core/detection/detect.h"
 #include "core/detection/scene.h"
 
 namespace dmise {
@@ -16,7 +15,6 @@ struct CompactJudgement {
 
 /// Judges a component no longer than a few PSFs: a star of this frame, blended stars, a point among
 /// trailed stars, or a short streak. Neither where stars are known and no source is fitted.
-CompactJudgement judge_compact(const Scene& scene, const Component& component,
-                               const DetectorSettings& settings);
+CompactJudgement judge_compact(const Scene& scene, const Component& component);
 
 }  // namespace dmise

@@ -8,6 +8,7 @@
 #include "core/detection/background.h"
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/faint_ends.h"
 #include "core/detection/faint_streaks.h"
 #include "core/detection/hidden_ends.h"
@@ -86,17 +87,19 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
 /// A faint streak must also stand out against parallel lines beside it: where several stars share
 /// every few pixels, some are aligned by chance. The scatter of stars has a longer tail than pixel
 /// noise, so it is weighted higher.
-bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+bool is_row_of_stars(const Scene& scene, const Source& source) {
   if (!source.streak) return false;
   const bool is_short = source.trail().length_px < 25;  // longer ones may be structures of the sky
   if (is_short && scene.row_would_be_known(source.trail())) return false;
   const double snr_per_px = source.snr() / std::sqrt(std::max(source.trail().length_px, 1.0));
-  if (source.snr() > settings.even_snr && snr_per_px > settings.even_snr_per_px) return false;
+  if (source.snr() > detection_limits::even_snr && snr_per_px > detection_limits::even_snr_per_px)
+    return false;
   const double rise = rise_above_neighbours(scene, source.trail());
   if (rise <= 0) return true;
   const double noise = 1 / source.snr(), scatter = 1 / rise;  // in units of the streak's light
   const double stars = std::sqrt(std::max(scatter * scatter - noise * noise, 0.0));
-  return std::hypot(settings.least_snr * noise, settings.least_snr_in_stars * stars) > 1;
+  return std::hypot(detection_limits::least_snr * noise,
+                    detection_limits::least_snr_in_stars * stars) > 1;
 }
 
 std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
@@ -149,10 +152,9 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
 }  // namespace
 
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
-                       const DetectorSettings& settings, Threads& threads,
-                       const CatalogueSky* sky) {
+                       const PixelMask* unusable, Threads& threads, const CatalogueSky* sky) {
   if (header.shutter_closed()) return without_detection(counts, header);
-  Background background(counts, settings.background_cell_px, threads);
+  Background background(counts, detection_limits::background_cell_px, threads);
   const StarMotion stars(header, counts.columns, counts.rows);
   Scene scene{counts,
               background,
@@ -162,10 +164,11 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
               sigma_with_pixel(header.psf_fwhm_px),
               header.detector && header.detector->blooming,
               PsfField::gaussian(header.psf_fwhm_px),
-              settings.unusable};
+              unusable};
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
-  const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
-                                          settings.seed_snr, threads, &filtered);
+  const auto components =
+      find_components(counts, background, scene.sigma_px, detection_limits::connect_snr,
+                      detection_limits::seed_snr, threads, &filtered);
   scene.use(measure_psf(scene, components));
   if (scene.unusable) hide(filtered, *scene.unusable);
   DetectionResult result;
@@ -178,22 +181,21 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     scene.flat = &filtered;
     scene.known = &*known;
   }
-  Judged judged = judge_components(scene, filtered, components, settings, threads);
+  Judged judged = judge_components(scene, filtered, components, threads);
   for (Source& source : judged.sources) extend(scene, filtered, source);
-  judged.star_like += std::uint32_t(std::erase_if(judged.sources, [&](const Source& source) {
-    return is_row_of_stars(scene, source, settings);
-  }));
+  judged.star_like += std::uint32_t(std::erase_if(
+      judged.sources, [&](const Source& source) { return is_row_of_stars(scene, source); }));
   for (std::size_t i = 0; i < components.size(); ++i)
     if (judged.reach_px[i]) hide(filtered, components[i], *judged.reach_px[i]);
-  for (const auto& area : background.bent_cells(settings.most_bend_in_noise))
+  for (const auto& area : background.bent_cells(detection_limits::most_bend_in_noise))
     for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
   if (!known) filtered.flatten(threads);
-  for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
+  for (Source& source : find_faint_streaks(scene, filtered, threads))
     judged.sources.push_back(std::move(source));
   const std::vector<Source> others = judged.sources;
   for (Source& source : judged.sources)
     source = with_likelier_ends(scene, std::move(source), others);
-  result.report = make_report(counts, header, background, scene.psf, settings.seed_snr);
+  result.report = make_report(counts, header, background, scene.psf, detection_limits::seed_snr);
   result.report.star_like = judged.star_like;
   result.report.stars_expected = std::uint32_t(result.stars.expected);
   result.report.stars_found = std::uint32_t(result.stars.found);
@@ -204,7 +206,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     Source seen = source;  // with errors that do not depend on the noise beside its ends
     add_steps_at_ends(seen, scene.sigma_px);
     add_errors_of_hidden_ends(scene, seen);
-    if (seen.snr() < settings.least_light_snr) continue;
+    if (seen.snr() < detection_limits::least_light_snr) continue;
     add_neglected_errors(source, ends ? &*ends : nullptr);
     if (!ends) add_errors_of_hidden_ends(scene, source);
     Detection d = describe(source, header);

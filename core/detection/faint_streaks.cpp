@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/units.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/hidden_ends.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/line_search.h"
@@ -92,15 +93,14 @@ double star_snr_on(const FilteredFrame& frame, const Trail& trail, Trail star) {
   return most;
 }
 
-bool is_streak(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+bool is_streak(const Scene& scene, const Source& source) {
   const Trail& t = source.trail();
   // The fit also fits the sky, which costs some of the SNR; of a faint patch of sky it costs more.
   if (source.snr() < 0.85 * least_streak_snr(t.length_px)) return false;
   if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > 2.0) return false;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
-  if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, source, settings))
-    return false;
-  return !moves_like_star(scene, source, star, settings.least_difference_px + 1);
+  if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, source)) return false;
+  return !moves_like_star(scene, source, star, detection_limits::least_difference_px + 1);
 }
 
 /// The slices of a trail's line between which a light of `e_per_px` is not there.
@@ -110,7 +110,7 @@ std::optional<Extent> gap_in(const Scene& scene, const Trail& t, double e_per_px
 }
 
 /// A streak, or each of several behind each other that were found as one.
-std::vector<Source> pieces(const Scene& scene, Source source, const DetectorSettings& settings) {
+std::vector<Source> pieces(const Scene& scene, Source source) {
   const Trail& t = source.trail();
   const double e_per_px = t.flux_e / std::max(t.length_px, 1.0);
   std::vector<Source> out;
@@ -120,11 +120,9 @@ std::vector<Source> pieces(const Scene& scene, Source source, const DetectorSett
     for (const Extent& side : {Extent{all.from, gap->from - 1}, Extent{gap->to + 1, all.to}}) {
       if (side.to - side.from < 2) continue;
       auto piece = fitted(scene, trail_along(line, side, e_per_px), 0.0);
-      if (!piece || piece->trail().length_px > 0.9 * t.length_px ||
-          !is_streak(scene, *piece, settings))
+      if (!piece || piece->trail().length_px > 0.9 * t.length_px || !is_streak(scene, *piece))
         continue;
-      for (Source& part : pieces(scene, std::move(*piece), settings))
-        out.push_back(std::move(part));
+      for (Source& part : pieces(scene, std::move(*piece))) out.push_back(std::move(part));
     }
   }
   if (out.empty()) out.push_back(std::move(source));
@@ -229,8 +227,7 @@ void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
   }
 }
 
-std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
-                                       const DetectorSettings& settings, Threads& threads) {
+std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame, Threads& threads) {
   Scene seen = scene;
   seen.hidden = &frame;
   TurnedFrame turned(frame);
@@ -276,11 +273,11 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
         near.median + least_streak_snr(trail.length_px) * near.scatter * crowding(frame, trail))
       continue;
     const double star_snr = star_snr_on(frame, trail, star);
-    if (snr * snr - star_snr * star_snr < settings.blend_margin) continue;
+    if (snr * snr - star_snr * star_snr < detection_limits::blend_margin) continue;
     auto source = fitted(seen, trail, snr);
     if (source) hide(frame, turned, source->trail(), 4 * scene.sigma_px);
-    if (source && is_streak(scene, *source, settings))
-      for (Source& piece : pieces(scene, std::move(*source), settings))
+    if (source && is_streak(scene, *source))
+      for (Source& piece : pieces(scene, std::move(*source)))
         found.push_back(with_hidden_light(scene, seen, std::move(piece)));
     else if (++failures == most_failures)
       break;

@@ -3,7 +3,6 @@
 
 #include "core/base/parallel.h"
 #include "core/detection/beamlets.h"
-#include "core/detection/detect.h"
 #include "core/detection/scene.h"
 
 namespace dmise {
@@ -24,7 +23,6 @@ double crowding(const FilteredFrame& frame, const Trail& trail);
 
 /// Finds streaks that no threshold of single pixels shows, strongest first, from the beamlets of a
 /// frame in which stars and known sources are hidden. What it finds is hidden too.
-std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
-                                       const DetectorSettings& settings, Threads& threads);
+std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame, Threads& threads);
 
 }  // namespace dmise

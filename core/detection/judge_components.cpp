@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/detection/compact_source.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/long_streak.h"
 
 namespace dmise {
@@ -58,8 +59,7 @@ bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c, double s
 }  // namespace
 
 Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
-                        const std::vector<Component>& components, const DetectorSettings& settings,
-                        Threads& threads) {
+                        const std::vector<Component>& components, Threads& threads) {
   Judged out;
   out.reach_px.resize(components.size(), int(std::ceil(2 * scene.sigma_px)));
   // Where faint stars scatter the sky, a component that is no source is hardly a part of one.
@@ -70,7 +70,7 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& c = components[i];
     const bool lengthy = is_long(scene, c);
-    if (!lengthy && scene.known && is_of_hidden_stars(filtered, c, settings.seed_snr)) {
+    if (!lengthy && scene.known && is_of_hidden_stars(filtered, c, detection_limits::seed_snr)) {
       ++out.star_like;
       out.reach_px[i] = 0;  // their wings are hidden
     } else {
@@ -80,12 +80,11 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
   std::ranges::stable_sort(longs, std::greater(), &Component::pixels);
   std::vector<CompactJudgement> found(compacts.size());
   threads.for_ranges(compacts.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      found[i] = judge_compact(scene, *compacts[i], settings);
+    for (std::size_t i = begin; i < end; ++i) found[i] = judge_compact(scene, *compacts[i]);
   });
   for (const Component* component : longs) {
     const std::size_t before = out.sources.size();
-    find_long_streaks(scene, *component, settings, out.sources);
+    find_long_streaks(scene, *component, out.sources);
     if (out.sources.size() > before) continue;
     ++out.star_like;
     if (is_calm(*component)) out.reach_px[std::size_t(component - components.data())].reset();

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/detection/components.h"
-#include "core/detection/detect.h"
 #include "core/detection/scene.h"
 
 namespace dmise {
@@ -21,7 +20,6 @@ struct Judged {
 /// Compact components are classified independently, in parallel; long ones by falling size, so that
 /// a streak's largest piece finds the whole of it and the others are recognised as pieces.
 Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
-                        const std::vector<Component>& components, const DetectorSettings& settings,
-                        Threads& threads);
+                        const std::vector<Component>& components, Threads& threads);
 
 }  // namespace dmise

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/quantile.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/evenness.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
@@ -175,23 +176,21 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
 }
 
 /// Whether a line is faint and hardly brighter than parallel lines, so that a fit is not worth it.
-bool is_among_others(const Scene& scene, const Line& line, const Extent& extent, double level,
-                     const DetectorSettings& settings) {
+bool is_among_others(const Scene& scene, const Line& line, const Extent& extent, double level) {
   const Slice middle = slice_at(scene, line, (extent.from + extent.to) / 2, 0.0);
-  if (middle.variance > 0 && level > settings.even_snr_per_px * std::sqrt(middle.variance))
+  if (middle.variance > 0 && level > detection_limits::even_snr_per_px * std::sqrt(middle.variance))
     return false;
   return rise_above_neighbours(scene, trail_along(line, extent, level)) < least_rise;
 }
 
 /// Alternates fitting and growing until the ends are stable.
-std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps,
-                                const DetectorSettings& settings) {
+std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps) {
   std::optional<Source> source;
   for (int round = 0; round < most_rounds; ++round) {
     const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
     if (!(level > 0)) return std::nullopt;
     if (is_hopeless(scene, trail_along(line, extent, level))) return std::nullopt;
-    if (round == 0 && is_among_others(scene, line, extent, level, settings)) return std::nullopt;
+    if (round == 0 && is_among_others(scene, line, extent, level)) return std::nullopt;
     const Extent before = extent;
     grow(scene, line, extent, +1, level, across_gaps);
     grow(scene, line, extent, -1, level, across_gaps);
@@ -214,14 +213,15 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
   }
   if (!is_continuous(scene, source->trail())) return std::nullopt;
   source = fit_source(scene, source->trail(), true, 0.02);
-  if (!source || source->snr() < settings.least_snr) return std::nullopt;
+  if (!source || source->snr() < detection_limits::least_snr) return std::nullopt;
   const Trail& t = source->trail();
   const Trail star = scene.star_trail(t.x_px, t.y_px);
   const bool may_be_chain = t.length_px < chain_px + 3 * star.length_px;
   if (source->fit.reduced_chi2() > (may_be_chain ? 2.0 : 5.0) || !is_continuous(scene, t))
     return std::nullopt;
-  if (may_be_chain && !beats_stars(scene, *source, settings)) return std::nullopt;
-  if (moves_like_star(scene, *source, star, settings.least_difference_px + 1)) return std::nullopt;
+  if (may_be_chain && !beats_stars(scene, *source)) return std::nullopt;
+  if (moves_like_star(scene, *source, star, detection_limits::least_difference_px + 1))
+    return std::nullopt;
   return source;
 }
 
@@ -265,11 +265,10 @@ std::vector<Point> free_points(const Scene& scene, const Component& component, d
 
 }  // namespace
 
-void find_long_streaks(const Scene& scene, const Component& component,
-                       const DetectorSettings& settings, std::vector<Source>& found) {
+void find_long_streaks(const Scene& scene, const Component& component, std::vector<Source>& found) {
   const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
   // The distance at which a streak with the component's peak falls below the connecting threshold.
-  const double rise = std::log(std::max(component.peak_snr / settings.connect_snr, 1.0));
+  const double rise = std::log(std::max(component.peak_snr / detection_limits::connect_snr, 1.0));
   const double skirt_px = std::max(3.0, 2 * std::sqrt(rise)) * scene.sigma_px + 1.5;
   std::vector<Point> points = free_points(scene, component, skirt_px, found);
   const double extent_px =
@@ -286,11 +285,11 @@ void find_long_streaks(const Scene& scene, const Component& component,
     if (on.size() < 8) break;
     const auto [low, high] = std::minmax_element(on.begin(), on.end());
     if ((*high - *low) * line.slice_px() < least_px) break;
-    auto source = streak_on(scene, line, {int(*low), int(*high)}, true, settings);
+    auto source = streak_on(scene, line, {int(*low), int(*high)}, true);
     // What is uneven with others behind it may be one of a row.
-    if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false, settings);
+    if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false);
     std::vector<Source> sources = streaks_beside(
-        scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}), settings);
+        scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}));
     if (sources.empty() && source) sources.push_back(std::move(*source));
     const AroundAny streaks(sources, skirt_px);
     std::erase_if(points, [&](const Point& p) {

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "core/detection/components.h"
-#include "core/detection/detect.h"
 #include "core/detection/scene.h"
 
 namespace dmise {
@@ -11,7 +10,6 @@ namespace dmise {
 /// from stars they touch and from crossing streaks. Each is followed beyond the component, across
 /// gaps, as far as its brightness continues. Chains of blended stars, which are neither even nor
 /// narrow, are rejected. Appends to `found`; light on a known streak is part of it.
-void find_long_streaks(const Scene& scene, const Component& component,
-                       const DetectorSettings& settings, std::vector<Source>& found);
+void find_long_streaks(const Scene& scene, const Component& component, std::vector<Source>& found);
 
 }  // namespace dmise

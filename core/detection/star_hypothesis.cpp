@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/detection/detection_limits.h"
 #include "core/detection/source_fit.h"
 
 namespace dmise {
@@ -37,20 +38,19 @@ double across_px(const Trail& trail, const Trail& other) {
 }
 
 /// Fits that are compared with that of a source.
-FitSettings comparison_of(const Scene& scene, const Source& source,
-                          const DetectorSettings& settings) {
+FitSettings comparison_of(const Scene& scene, const Source& source) {
   const Trail& t = source.trail();
   return {.psf = scene.psf.at({t.x_px, t.y_px}),
-          .model_error = std::max(source.model_error, settings.model_error),
+          .model_error = std::max(source.model_error, detection_limits::model_error),
           .most_steps = 15,
           .settled_chi2 = comparison_settled_chi2};
 }
 
 /// Whether the line may be a noisy piece of one star's trail.
 bool is_piece_of_star(const Scene& scene, const Trail& line, const Trail& star, double margin_px,
-                      const DetectorSettings& settings, const FitSettings& fit_settings) {
+                      const FitSettings& fit_settings) {
   const double spare_px = star.length_px - line.length_px;
-  if (spare_px <= 0 || across_px(line, star) > settings.least_difference_px) return false;
+  if (spare_px <= 0 || across_px(line, star) > detection_limits::least_difference_px) return false;
   for (const double side : {-0.5, 0.0, 0.5}) {
     Trail whole = star;
     whole.x_px = line.x_px + side * spare_px * std::cos(star.angle_rad);
@@ -59,7 +59,7 @@ bool is_piece_of_star(const Scene& scene, const Trail& line, const Trail& star, 
     const auto pixels = pixels_near(scene, whole, margin_px);
     const double as_star = fit_trails(pixels, {whole}, {trail_place}, fit_settings).deviance;
     const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
-    if (as_star < as_line + settings.blend_margin) return true;
+    if (as_star < as_line + detection_limits::blend_margin) return true;
   }
   return false;
 }
@@ -81,31 +81,31 @@ bool moves_like_star(const Scene& scene, const Source& source, const Trail& star
          t.length_px < star.length_px + tolerance_px;
 }
 
-bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+bool point_beats_star(const Scene& scene, const Source& source) {
   const Trail& point = source.trail();
   Trail star = scene.star_trail(point.x_px, point.y_px);
   star.flux_e = point.flux_e;
   const auto pixels = pixels_near(scene, star, 2.5 * scene.sigma_px + 0.5);
-  const FitSettings fit_settings = comparison_of(scene, source, settings);
+  const FitSettings fit_settings = comparison_of(scene, source);
   const double as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings).deviance;
   const double as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings).deviance;
-  return as_point < as_star - settings.blend_margin;
+  return as_point < as_star - detection_limits::blend_margin;
 }
 
-bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+bool beats_stars(const Scene& scene, const Source& source) {
   const Trail& line = source.trail();
   if (scene.row_would_be_known(line)) return true;
   const Trail star = scene.star_trail(line.x_px, line.y_px);
   const double margin_px = 2.5 * scene.sigma_px + 0.5;
   const auto pixels = pixels_near(scene, line, margin_px);
-  const FitSettings fit_settings = comparison_of(scene, source, settings);
-  if (is_piece_of_star(scene, line, star, margin_px, settings, fit_settings)) return false;
+  const FitSettings fit_settings = comparison_of(scene, source);
+  if (is_piece_of_star(scene, line, star, margin_px, fit_settings)) return false;
   const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
   // More stars fit better by chance, by about one per additional parameter.
   for (int count = 2; count <= most_stars; ++count) {
     const double freedom = 3.0 * count - 5.0;
     const double as_stars = deviance_of_stars(pixels, line, star, count, fit_settings) + freedom;
-    if (as_stars < as_line + settings.chain_margin) return false;
+    if (as_stars < as_line + detection_limits::chain_margin) return false;
   }
   return true;
 }

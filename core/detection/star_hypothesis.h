@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "core/detection/detect.h"
 #include "core/detection/scene.h"
 
 namespace dmise {
@@ -22,10 +21,10 @@ bool moves_like_star(const Scene& scene, const Source& source, const Trail& star
 
 /// Whether a point explains the light around the source better than a star's trail, also than one
 /// of which only an end is there.
-bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings);
+bool point_beats_star(const Scene& scene, const Source& source);
 
 /// Whether a line explains the light around the source better than two, three or four stars in a
 /// row, and than a piece of one star's trail; true also if a catalogue would have these stars.
-bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings);
+bool beats_stars(const Scene& scene, const Source& source);
 
 }  // namespace dmise

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/detection/detection_limits.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
@@ -165,8 +166,7 @@ bool are_beside(const Trail& a, const Trail& b, double sigma_px) {
 
 }  // namespace
 
-std::vector<Source> streaks_beside(const Scene& scene, const Trail& one,
-                                   const DetectorSettings& settings) {
+std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   const PixelPosition at{one.x_px, one.y_px};
   const double sigma_px = scene.psf.sigma_at(at), reach_px = reach_sigmas * sigma_px;
   const Trail star = scene.star_trail(one.x_px, one.y_px);
@@ -191,7 +191,7 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one,
              flux_e)};
   FitSettings fit_settings;
   fit_settings.psf = scene.psf.at(at);
-  fit_settings.model_error = settings.model_error;
+  fit_settings.model_error = detection_limits::model_error;
   fit_settings.background_sigma_e = 0.1 * std::sqrt(double(pixels.front().variance_e2));
   fit_settings.most_steps = 30;
   const unsigned free = one.length_px > bent_from_px ? trail_line | trail_sagitta : trail_line;
@@ -218,8 +218,8 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one,
     if (!plausible(scene, source.trail()) || !(source.fit.cov(2, 2) > 0)) return {};
     hold_ends_at_edge(scene, source);
     set_flags(scene, source.trail(), source);
-    if (source.snr() < settings.least_snr ||
-        moves_like_star(scene, source, star, settings.least_difference_px + 1))
+    if (source.snr() < detection_limits::least_snr ||
+        moves_like_star(scene, source, star, detection_limits::least_difference_px + 1))
       return {};
     out.push_back(std::move(source));
   }

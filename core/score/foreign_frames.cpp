@@ -178,7 +178,7 @@ ScoreInput read_frames(const std::string& directory, const std::string& truth_cs
     progress(double(i) / double(files.size()), files[i]);
     const std::string path = directory + "/" + files[i];
     const Frame pixels = read_any_frame(path, {}, threads);
-    const auto result = detector.detect(pixels, {}, threads);
+    const auto result = detector.detect(pixels, threads);
     const DetectionResult& found = result.detection;
     const UnknownFacts& unknown = result.header.unknown;
     ScoredFrame frame = frame_of_report(found.report, unknown);

@@ -6,7 +6,7 @@
 #include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/detection/components.h"
-#include "core/detection/detect.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/faint_streaks.h"
 #include "core/detector/expected_noise.h"
 #include "core/effects/frame_effects.h"
@@ -56,10 +56,11 @@ double correlation_squared(double sigma_px, double length_px) {
 DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px, double star_px) {
   DetectionLimit limit{.streak_px = streak_px};
   limit.point_e = electrons_of(point_limit_snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
-  if (const DetectorSettings search; star_px >= search.least_difference_px) {
+  if (star_px >= detection_limits::least_difference_px) {
     // Beyond a few widths the correlation no longer changes: limit the length of the sum.
     const double unlike = 1.0 - correlation_squared(sigma_px, std::min(star_px, 100 * sigma_px));
-    const double snr = std::max(point_limit_snr, std::sqrt(search.blend_margin / unlike));
+    const double snr =
+        std::max(point_limit_snr, std::sqrt(detection_limits::blend_margin / unlike));
     limit.found_point_e = electrons_of(snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
   }
   const double width_px =

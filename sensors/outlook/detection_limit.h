@@ -15,7 +15,7 @@ struct DetectionLimit {
 };
 
 /// Required SNR of a point's fit, and of a pixel of a streak in the frame filtered for points
-/// (`DetectorSettings`).
+/// (core/detection/detection_limits.h).
 inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 
 /// For pixels of `noise_e` rms without the source, and the Gaussian `sigma_px` including the pixel.
@@ -29,7 +29,7 @@ inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 ///
 /// A point is distinguished from star trails of `star_px`, if they are long enough, by its shape:
 /// the trail fits it worse by SNR^2 (1 - r^2), where r is the correlation of both shapes, which
-/// must reach the margin `DetectorSettings::blend_margin`.
+/// must reach the margin `detection_limits::blend_margin`.
 DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px, double star_px);
 
 /// Shorter streaks are distinguished from a few stars in a row by shape, which needs more light

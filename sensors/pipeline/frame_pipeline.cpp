@@ -247,7 +247,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   {
     Stopwatch timing(frame.detection_s);
     Frame exposed{std::move(frame.counts), as_in_file(frame.header)};
-    result = sensor.detect ? detector.detect(exposed, {}, threads).detection
+    result = sensor.detect ? detector.detect(exposed, threads).detection
                            : without_detection(exposed.counts, exposed.header);
     frame.counts = std::move(exposed.counts);
   }

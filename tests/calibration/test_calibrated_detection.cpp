@@ -60,7 +60,7 @@ struct CalibratedDetection : testing::Test {
 };
 
 TEST_F(CalibratedDetection, BelievesAHeaderThatIsRight) {
-  const auto result = CalibratedDetector(map).detect({drawn(1.0), truth}, {}, threads);
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), truth}, threads);
   EXPECT_TRUE(result.detection.stars.agree());
   EXPECT_FALSE(result.solution);
   EXPECT_EQ(result.header, truth);
@@ -70,7 +70,7 @@ TEST_F(CalibratedDetection, BelievesAHeaderThatIsRight) {
 // Two and a half degrees off: directions are those of the stars, not those of the header.
 TEST_F(CalibratedDetection, FindsWhereTheFramePoints) {
   const FrameHeader believed = header_at(ra_rad + 0.05);
-  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads);
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, threads);
   ASSERT_TRUE(result.solution);
   EXPECT_TRUE(result.detection.stars.agree());
   expect_satellite(result.detection);
@@ -82,7 +82,7 @@ TEST_F(CalibratedDetection, FindsItByADirectionAlone) {
   believed.unknown.add(FrameFact::pointing);
   believed.observation.ra_rad = ra_rad;
   believed.observation.dec_rad = dec_rad + 0.017;
-  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads);
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, threads);
   ASSERT_TRUE(result.solution);
   EXPECT_FALSE(result.header.unknown.has(FrameFact::pointing));
   expect_satellite(result.detection);
@@ -90,21 +90,21 @@ TEST_F(CalibratedDetection, FindsItByADirectionAlone) {
 
 TEST_F(CalibratedDetection, FindsItWithoutAnyPointing) {
   const FrameHeader believed = header_at(ra_rad + 2.0);
-  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads, true);
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, threads, true);
   ASSERT_TRUE(result.solution);
   expect_satellite(result.detection);
 }
 
 // In clouds, and with a header that is too wrong, the satellite is found by its shape.
 TEST_F(CalibratedDetection, GoesOnWithoutStars) {
-  const auto clouds = CalibratedDetector(map).detect({drawn(0.0), truth}, {}, threads);
+  const auto clouds = CalibratedDetector(map).detect({drawn(0.0), truth}, threads);
   EXPECT_FALSE(clouds.solution);
   EXPECT_FALSE(clouds.detection.stars.agree());
   EXPECT_EQ(clouds.detection.detections.size(), 1u);
-  EXPECT_THROW(CalibratedDetector(map).detect({drawn(0.0), truth}, {}, threads, true), Error);
-  const auto without = CalibratedDetector(nullptr).detect({drawn(1.0), truth}, {}, threads);
+  EXPECT_THROW(CalibratedDetector(map).detect({drawn(0.0), truth}, threads, true), Error);
+  const auto without = CalibratedDetector(nullptr).detect({drawn(1.0), truth}, threads);
   EXPECT_EQ(without.detection.detections.size(), 1u);
-  EXPECT_THROW(CalibratedDetector(nullptr).detect({drawn(1.0), truth}, {}, threads, true), Error);
+  EXPECT_THROW(CalibratedDetector(nullptr).detect({drawn(1.0), truth}, threads, true), Error);
 }
 
 }  // namespace

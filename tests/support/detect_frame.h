@@ -6,9 +6,8 @@ namespace dmise::test {
 
 /// What is detected in a frame by its header alone.
 inline DetectionLines detect_frame(const Frame& frame, Threads& threads) {
-  DetectorSettings settings;
-  if (!frame.unusable.pixels.empty()) settings.unusable = &frame.unusable;
-  return as_lines(detect(frame.counts, frame.header, settings, threads), frame.header, frame.notes);
+  const PixelMask* unusable = frame.unusable.pixels.empty() ? nullptr : &frame.unusable;
+  return as_lines(detect(frame.counts, frame.header, unusable, threads), frame.header, frame.notes);
 }
 
 }  // namespace dmise::test
