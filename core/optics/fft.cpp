@@ -211,7 +211,7 @@ void RealFft2::invert(FftBuffer& sum, int wanted_begin, int wanted_end, Threads&
   inverse_rows(sum, wanted_begin, wanted_end, threads);
 }
 
-ComplexFft2::ComplexFft2(int side) : side_(side) {
+ComplexFft2::ComplexFft2(int side) {
   if (side < 1) throw Error("fft: side must be >= 1");
   FftBuffer data(2 * std::size_t(side) * std::size_t(side));
   std::lock_guard lock(planner());

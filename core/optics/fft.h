@@ -84,13 +84,11 @@ class ComplexFft2 {
   ~ComplexFft2();
   ComplexFft2(const ComplexFft2&) = delete;
   ComplexFft2& operator=(const ComplexFft2&) = delete;
-  int side() const { return side_; }
   /// side x side complex numbers, row-major.
   void transform(FftBuffer& data) const;
 
  private:
   void* plan_ = nullptr;
-  int side_;
 };
 
 }  // namespace dmise

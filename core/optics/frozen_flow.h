@@ -20,7 +20,6 @@ class FrozenFlow {
   /// turbulence.
   FrozenFlow(int side, double outer_scale, const RngKey& key);
 
-  int side() const { return screens_.side(); }
   int torus() const { return screens_.torus(); }
   /// Samples over which one torus blends into the next: half of the torus minus the window.
   int fading_length() const { return length_; }

@@ -120,8 +120,7 @@ PsfKernel PsfModel::gaussian_kernel(const FieldPlace& place, double wavelength_m
     if (extra == 0.0) return 0.0;
     return std::exp(-scale * square) * disc_otf(std::hypot(nu_x, nu_y)) * extra;
   };
-  return signed_kernel_of(otf, OtfSymmetry::point, 0.5 / cell_rad_, cell_rad_, plan_.half_cells,
-                          &lost_);
+  return signed_kernel_of(otf, OtfSymmetry::point, 0.5 / cell_rad_, cell_rad_, plan_.half_cells);
 }
 
 double PsfModel::air_otf(double nu, double wavelength_m) const {
@@ -163,8 +162,7 @@ PsfKernel PsfModel::round_kernel(double wavelength_m) {
                  : diffraction_otf(nu, wavelength_m, optics_.aperture_m, optics_.obscuration);
     return blur == 0.0 ? 0.0 : blur * extra_otf(nu_x, nu_y, wavelength_m);
   };
-  return signed_kernel_of(otf, OtfSymmetry::axes, 0.5 / cell_rad_, cell_rad_, plan_.half_cells,
-                          &lost_);
+  return signed_kernel_of(otf, OtfSymmetry::axes, 0.5 / cell_rad_, cell_rad_, plan_.half_cells);
 }
 
 PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,

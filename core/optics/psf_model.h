@@ -33,10 +33,6 @@ class PsfModel {
   /// Kernel of an exposure that starts at `start_s` of simulation time and lasts `exposure_s`.
   PsfKernel kernel(const FieldPlace& place, double start_s, double exposure_s);
 
-  /// Fraction of the light beyond the kernel's end, redistributed by scaling; of the last symmetric
-  /// kernel computed.
-  double lost() const { return lost_; }
-
  private:
   bool is_round(const FieldPlace& place) const;
   double air_otf(double nu_per_rad, double wavelength_m) const;
@@ -64,7 +60,6 @@ class PsfModel {
   std::vector<Centred> centred_;  // cache
   PupilGrid screen_grid_{};       // at the plan's wavelength
   std::optional<FrozenFlow> flow_;
-  double lost_ = 0.0;
 };
 
 }  // namespace dmise

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "core/base/error.h"
-#include "core/base/formatted.h"
 #include "core/optics/psf_table.h"
 
 namespace dmise {
@@ -101,7 +101,6 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                     : plan.screens == 1 ? ExposureKind::brief
                                         : ExposureKind::between;
   const Measures m = measure(o, wavelength_m, air, plan.exposure == ExposureKind::lasting);
-  plan.cutoff_per_px = m.cutoff_per_px;
   plan.fwhm_px = width_px(m);
 
   const bool plain = s.model == Model::gaussian;
@@ -114,9 +113,6 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   if (even &&
       (s.method == Method::deposit || (s.method == Method::automatic && (plain || narrow)))) {
     plan.method = Method::deposit;
-    // Airy wings beyond a pixel's half side carry about 0.2 (lambda / D) / radius of the light.
-    plan.error = plain ? 2e-6 : 0.2 * m.airy_px / 0.5;
-    plan.why = plain ? "Gaussian model" : "blur far below a pixel";
     return plan;
   }
 
@@ -168,9 +164,6 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                             std::to_string(std::lround(1e-6 * cells)) +
                             " million in this frame, more than " +
                             std::to_string(std::lround(1e-6 * largest_field_cells)) + " million");
-  plan.error = 1e-4;
-  plan.why = formatted("%.2f px wide, %d cells a pixel, %.1f million cells", plan.fwhm_px,
-                       plan.oversampling, 1e-6 * cells);
   return plan;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <optional>
-#include <string>
 
 #include "core/optics/air_turbulence.h"
 #include "core/optics/camera.h"
@@ -16,19 +15,16 @@ enum class ExposureKind {
   lasting,  // the long-exposure transfer function
 };
 
-/// How a sensor's point spread is computed, and why.
+/// How a sensor's point spread is computed.
 struct PsfPlan {
   double wavelength_m = 0.0;  // for which it was made
   PointSpread::Method method = PointSpread::Method::deposit;
   ExposureKind exposure = ExposureKind::none;
-  int screens = 0;           // of `brief` and `between`
-  int oversampling = 1;      // cells a pixel
-  int half_cells = 0;        // of the kernel
-  double fwhm_px = 0.0;      // of diffraction, seeing, jitter and defocus in quadrature
-  double cutoff_per_px = 0;  // frequency above which less than 1e-4 is left
-  double error = 0.0;        // bound or estimate, as a fraction of the peak
-  double beyond = 0.0;       // fraction of light beyond the kernel's end, redistributed
-  std::string why;           // one line of text
+  int screens = 0;       // of `brief` and `between`
+  int oversampling = 1;  // cells a pixel
+  int half_cells = 0;    // of the kernel
+  double fwhm_px = 0.0;  // of diffraction, seeing, jitter and defocus in quadrature
+  double beyond = 0.0;   // fraction of light beyond the kernel's end, redistributed
 };
 
 /// Chooses the method by the width of the blur relative to the pixel:

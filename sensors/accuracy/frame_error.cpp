@@ -255,14 +255,8 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
     const double lost_e = std::copysign(beyond(e, rounding_e), e);
     const double moved_e = beyond(std::hypot(x_e, y_e), rounding_e * source.margin_px);
     const double ratio = std::max(1e-10, 1.0 + lost_e / source.light_e);
-    const SourceError one{.name = source.name,
-                          .light_e = source.light_e,
-                          .snr = source.snr,
-                          .photometry_mag = std::abs(2.5 * std::log10(ratio)),
-                          .position_px = moved_e / source.light_e};
-    largest.photometry_mag = std::max(largest.photometry_mag, one.photometry_mag);
-    largest.position_px = std::max(largest.position_px, one.position_px);
-    error.sources.push_back(one);
+    largest.photometry_mag = std::max(largest.photometry_mag, std::abs(2.5 * std::log10(ratio)));
+    largest.position_px = std::max(largest.position_px, moved_e / source.light_e);
   }
   largest.noise = std::max(largest.noise, skewness_error(effects));
   return error;

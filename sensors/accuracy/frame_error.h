@@ -22,18 +22,10 @@ struct ReferenceSource {
   double snr = 0.0;                  // by a matched filter
 };
 
-/// What one source lacks of the reference.
-struct SourceError {
-  std::string name;
-  double light_e = 0.0, snr = 0.0;
-  double photometry_mag = 0.0, position_px = 0.0;
-};
-
 /// What a frame lacks of the reference.
 struct FrameError {
-  ErrorBound largest;
-  std::vector<SourceError> sources;  // of those that count
-  double residual_sigma = 0.0;       // rms of the difference of all pixels, in their noise
+  ErrorBound largest;           // of background and sources that count
+  double residual_sigma = 0.0;  // rms of the difference of all pixels, in their noise
 };
 
 /// Compares frames of one exposure with its reference, by what they expect of every pixel:

@@ -9,20 +9,13 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {
 
 std::string path_in(const std::string& directory) { return directory + "/tasks.journal"; }
-
-template <class T>
-void put(std::string& line, T value) {
-  char text[64];
-  const auto [end, code] = std::to_chars(text, text + sizeof text, value);
-  line += ' ';
-  line.append(text, end);
-}
 
 /// Reads the numbers of a line one by one; `good` is false after a word that is no number.
 struct Words {
@@ -111,21 +104,18 @@ std::vector<std::shared_ptr<const Task>> CueJournal::resume() {
 }
 
 void CueJournal::add(const Task& t) {
-  std::string line(task_word);
-  put(line, t.id), put(line, t.track);
+  std::string line =
+      std::string(task_word) + " " + std::to_string(t.id) + " " + std::to_string(t.track);
   for (const SimTime time : {t.given, t.start, t.on_target, t.end, t.path_start})
-    put(line, time.ns);
-  put(line, t.path_step_s);
-  put(line, std::uint32_t(t.path_m.size() / 3));
+    line += " " + std::to_string(time.ns);
+  line += " " + shortest_text(t.path_step_s) + " " + std::to_string(t.path_m.size() / 3);
   for (const auto* path : {&t.path_m, &t.path_m_per_s})
-    for (const double x : *path) put(line, x);
+    for (const double x : *path) line += " " + shortest_text(x);
   write(line + "\n");
 }
 
 void CueJournal::end(Tick tick) {
-  std::string line(tick_word);
-  put(line, std::int64_t(tick));
-  write(line + "\n");
+  write(std::string(tick_word) + " " + std::to_string(tick) + "\n");
 }
 
 Tick CueJournal::ticks_done(const std::string& directory) {

@@ -19,7 +19,7 @@ PsfPlan plan_of(const SensorConfig& sensor) {
   if (sensor.effects.has(PointSpread::facts))
     return plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s,
                     AirTurbulence::level(sensor.effects));
-  return {.why = "off"};
+  return {};
 }
 
 /// The optics with those effects of them that are on. Kernels reach as far as without.

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/quantile.h"
+
 namespace dmise {
 namespace {
 
-/// The smallest value that a share of the values does not exceed.
-double quantile_of(std::vector<double>& values, double share) {
+/// The smallest value that a share of the values does not exceed; 0 without any.
+double not_exceeded_by(std::vector<double>& values, double share) {
   if (values.empty()) return 0.0;
-  const auto k = std::ptrdiff_t(std::ceil(share * double(values.size()))) - 1;
-  const auto at = values.begin() + std::max<std::ptrdiff_t>(0, k);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return value_of_rank(values,
+                       std::size_t(std::max(0.0, std::ceil(share * double(values.size())) - 1.0)));
 }
 
 /// What is known of one object in a span of time: the passes of all sensors.
@@ -52,7 +52,8 @@ class Sums {
     for (std::size_t k = 0; k <= out.shells.size(); ++k) {
       ShellSummary& s = k < out.shells.size() ? out.shells[k] : out.all;
       s.objects = k < out.shells.size() ? shells.shells[k].objects : shells.of_object.size();
-      s.revisits = {gaps_s_[k].size(), quantile_of(gaps_s_[k], 0.5), quantile_of(gaps_s_[k], 0.9)};
+      s.revisits = {gaps_s_[k].size(), not_exceeded_by(gaps_s_[k], 0.5),
+                    not_exceeded_by(gaps_s_[k], 0.9)};
     }
     return std::move(out);
   }

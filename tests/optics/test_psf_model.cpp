@@ -318,16 +318,14 @@ TEST(PsfModel, FromAMillimetreOfSeeingToNoneAtAllKernelsAreFinite) {
   }
 }
 
-TEST(PsfPlan, ChoosesByTheWidthOfTheBlurAndTellsWhy) {
+TEST(PsfPlan, ChoosesByTheWidthOfTheBlur) {
   Optics o = telescope();
   EXPECT_EQ(plan_psf(o, lambda, {}, 1.0).method, PointSpread::Method::transform);
   o.pixel_pitch_m = 100e-6;  // an all-sky camera's: lambda / D far below a pixel
   EXPECT_EQ(plan_psf(o, lambda, {}, 1.0).method, PointSpread::Method::deposit);
   o.pixel_pitch_m = 12e-6;
   o.columns = o.rows = 4096;  // would need 280 million cells
-  const PsfPlan plan = plan_psf(o, lambda, {}, 1.0);
-  EXPECT_EQ(plan.method, PointSpread::Method::direct);
-  EXPECT_NE(plan.why.find("cells a pixel"), std::string::npos);
+  EXPECT_EQ(plan_psf(o, lambda, {}, 1.0).method, PointSpread::Method::direct);
   o.spread.method = PointSpread::Method::deposit;
   EXPECT_THROW(plan_psf(o, lambda, {}, 1.0), ConfigError);
   Optics lens;
