@@ -68,7 +68,7 @@ void MasterProcess::handle(ControlMessage& message, const std::string& name) {
   } else if (heard_.has_node_news()) {
     handle_news(name);
   } else if (heard_.has_failed()) {
-    coordinator_.fail(name, one_line(heard_.failed().reason()));
+    coordinator_.fail(name, printable(heard_.failed().reason()));
   } else if (heard_.has_hello() || heard_.has_control()) {
     if (heard_.has_control()) control();
     v1::MasterMessage answer;
@@ -88,7 +88,7 @@ void MasterProcess::drop_removed() {
 
 void MasterProcess::refuse(std::string_view sender, const std::string& fault) {
   log_.warn("messages refused", "refused a message: " + fault);
-  if (heard_.has_join()) refuse_join(sender, fault, heard_.join().name().substr(0, 256));
+  if (heard_.has_join()) refuse_join(sender, fault, printable(heard_.join().name(), 256));
 }
 
 void MasterProcess::refuse_join(std::string_view sender, const std::string& reason,
@@ -219,12 +219,12 @@ void MasterProcess::handle_news(const std::string& agent) {
   if (node == coordinator_.behind().end() || node->second.host != agent) return;
   switch (news.what()) {
     case v1::NodeNews::WHAT_LOST:
-      return coordinator_.lost_behind(news.name(), news.incarnation(), one_line(news.reason()),
+      return coordinator_.lost_behind(news.name(), news.incarnation(), printable(news.reason()),
                                       news.done_tick(), now());
     case v1::NodeNews::WHAT_FOUND:
       return coordinator_.found_behind(news.name(), news.incarnation());
     case v1::NodeNews::WHAT_FAILED:
-      return coordinator_.fail_behind(news.name(), news.incarnation(), one_line(news.reason()));
+      return coordinator_.fail_behind(news.name(), news.incarnation(), printable(news.reason()));
     default:
       return;
   }

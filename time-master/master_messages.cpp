@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/printable.h"
 #include "nodes/runtime/process/seconds.h"
-#include "nodes/runtime/protocol/control_rules.h"
 
 namespace dmise {
 
@@ -127,7 +127,7 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
 void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {
   const std::string why = control.reason().empty()
                               ? "ended on request"
-                              : "ended on request: " + one_line(control.reason());
+                              : "ended on request: " + printable(control.reason());
   switch (control.action()) {
     case v1::Control::ACTION_PAUSE:
       return coordinator.pause(control.tick());

@@ -1,6 +1,7 @@
 // The nodes of a host: their messages, and what the run answers to them.
 #include <spdlog/spdlog.h>
 
+#include "core/base/printable.h"
 #include "nodes/agent/host_agent_process.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/protocol/control_rules.h"
@@ -39,7 +40,7 @@ void HostAgentProcess::handle_nodes() {
     else if (heard_.has_leave())
       leave_of(name);
     else if (heard_.has_failed())
-      barrier_->fail(name, one_line(heard_.failed().reason()));
+      barrier_->fail(name, printable(heard_.failed().reason()));
   }
 }
 

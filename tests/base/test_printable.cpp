@@ -41,6 +41,8 @@ TEST(Printable, EscapesBytesThatAreNoUtf8) {
 
 TEST(Printable, CutsWhatIsLongAndSaysHowLongItWas) {
   EXPECT_EQ(printable(std::string(1 << 20, 'x'), 10), "xxxxxxxxxx... (1048576 bytes)");
+  EXPECT_EQ(printable("\xc3\xa9\xc3\xa9\xc3\xa9", 3),
+            "\xc3\xa9\xc3\xa9... (6 bytes)");  // whole characters
 }
 
 TEST(Printable, OfAnyBytesHoldsNoControlAndNoNewLine) {

@@ -3,6 +3,7 @@
 // and a NodeMessage.
 #include <google/protobuf/stubs/logging.h>
 
+#include "core/base/printable.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/peer_directory.h"
 #include "tests/fuzz/chunks.h"
@@ -43,7 +44,7 @@ struct Master {
       case v1::NodeMessage::kJoin:
         if (!coordinator.join(request_of(message.join()), now))
           directory.add(sender, coordinator.members().at(message.join().name()).incarnation,
-                        message.join());
+                        message.join(), 0);
         break;
       case v1::NodeMessage::kReady:
         coordinator.ready(name, now);
@@ -59,7 +60,7 @@ struct Master {
         coordinator.leave(name, message.leave().interrupted(), now);
         break;
       case v1::NodeMessage::kFailed:
-        coordinator.fail(name, one_line(message.failed().reason()));
+        coordinator.fail(name, printable(message.failed().reason()));
         break;
       case v1::NodeMessage::kControl:
         apply(message.control(), coordinator, now);

@@ -18,8 +18,6 @@ TEST(ControlRules, ANameIsALineOfText) {
     message.mutable_join()->set_name(name);
     EXPECT_TRUE(fault_of(message)) << name;
   }
-  EXPECT_EQ(one_line("no light\nat all\x1b[2J"), "no light at all [2J");
-  EXPECT_EQ(one_line(std::string(5000, 'x')).size(), 1024u);
 }
 
 TEST(ControlRules, NumbersAreThoseOfARun) {

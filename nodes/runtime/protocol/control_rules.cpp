@@ -196,11 +196,4 @@ std::optional<std::string> fault_of(const v1::FrameRequest& request) {
   }
 }
 
-std::string one_line(std::string text) {
-  constexpr std::size_t longest = 1024;
-  if (text.size() > longest) text.resize(longest);
-  std::replace_if(text.begin(), text.end(), is_control, ' ');
-  return text;
-}
-
 }  // namespace dmise

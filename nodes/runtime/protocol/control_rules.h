@@ -17,7 +17,4 @@ std::optional<std::string> fault_of(const v1::Grant& grant);
 std::optional<std::string> fault_of(const v1::ResendRequest& request);
 std::optional<std::string> fault_of(const v1::FrameRequest& request);
 
-/// Makes a reason given by another process fit for a line of a log.
-std::string one_line(std::string text);
-
 }  // namespace dmise
