@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/text_file.h"
 #include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
@@ -87,19 +88,10 @@ void print_info(const FileOptions& options) {
   need_elements(catalogue);
 }
 
-void append(std::string& row, double x) {
-  char buffer[32];
-  row += ',';
-  row.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
-}
-
 template <class F>
 void append(std::string& row, const Vec<F>& position_m, const Vec<F>& velocity_m_per_s) {
-  for (const auto& v : {position_m / 1e3, velocity_m_per_s / 1e3}) {
-    append(row, v.x);
-    append(row, v.y);
-    append(row, v.z);
-  }
+  for (const auto& v : {position_m / 1e3, velocity_m_per_s / 1e3})
+    for (const double x : {v.x, v.y, v.z}) row += "," + shortest_text(x);
 }
 
 void print_states(const StatesOptions& options) {

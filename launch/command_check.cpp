@@ -158,13 +158,12 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool h
                 interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
   for (const auto& warning : outlook.warnings)
     std::printf("warning: %s\n", printable(warning, 4000).c_str());
+  const std::size_t warnings = outlook.warnings.size();
+  const std::string warned = formatted(", %zu warning%s", warnings, warnings == 1 ? "" : "s");
   std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors%s\n",
               printable(scenario.path).c_str(), outlook.objects, scenario.sensors.size(),
               static_cast<long long>(scenario.last_tick()), scenario.tick.seconds(),
-              outlook.warnings.empty() ? ""
-                                       : (", " + std::to_string(outlook.warnings.size()) +
-                                          (outlook.warnings.size() == 1 ? " warning" : " warnings"))
-                                             .c_str());
+              warnings > 0 ? warned.c_str() : "");
 }
 
 void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const Clock& clock,

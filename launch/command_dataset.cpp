@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/base/version.h"
 #include "core/config/scenario_draws.h"
@@ -34,18 +34,12 @@ struct DatasetOptions {
 };
 
 /// Parses two whole numbers >= 0 that are separated by `between`.
-std::optional<std::pair<std::uint64_t, std::uint64_t>> two_numbers(const std::string& text,
+std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_view text,
                                                                    std::string_view between) {
   const std::size_t at = text.find(between);
   if (at == std::string::npos) return std::nullopt;
-  const auto number = [](std::string_view s) -> std::optional<std::uint64_t> {
-    std::uint64_t x = 0;
-    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
-    if (error != std::errc{} || end != s.data() + s.size()) return std::nullopt;
-    return x;
-  };
-  const auto first = number(std::string_view(text).substr(0, at));
-  const auto second = number(std::string_view(text).substr(at + between.size()));
+  const auto first = parse_count(text.substr(0, at));
+  const auto second = parse_count(text.substr(at + between.size()));
   if (!first || !second) return std::nullopt;
   return std::pair(*first, *second);
 }
@@ -67,7 +61,7 @@ Task task_of(const DatasetOptions& options) {
 }
 
 DatasetPlan plan_of(const DatasetOptions& options, const std::string& scenario_text) {
-  constexpr std::uint64_t most_seed = 999'999'999, most_shards = 1'000'000;
+  constexpr std::uint32_t most_seed = 999'999'999, most_shards = 1'000'000;
   const auto seeds = two_numbers(options.seeds, "..");
   if (!seeds || seeds->first > seeds->second || seeds->second > most_seed)
     throw ConfigError("--seeds: must be A..B with 0 <= A <= B <= 999999999, got " +

@@ -2,17 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
 #include "launch/commands.h"
@@ -219,9 +218,7 @@ class Join {
 /// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" unexpanded.
 int slot_of_environment() {
   const char* text = std::getenv("DMISE_SLOT");
-  int slot = 0;
-  if (text) std::from_chars(text, text + std::strlen(text), slot);
-  return slot;
+  return text ? parse_integer(text).value_or(0) : 0;
 }
 
 /// For the help text: "broker, ... or sensor".

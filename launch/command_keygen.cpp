@@ -33,16 +33,15 @@ std::vector<std::string> askers_of(const NodeKind& kind, const Scenario& scenari
 
 void keygen(const KeygenOptions& options) {
   std::vector<std::string> names = options.names, several;
-  std::map<std::string, std::vector<std::string>>
-      agents;  // with the nodes for which they may speak
-  std::map<std::string, std::vector<std::string>> rings;
+  std::map<std::string, std::vector<std::string>> agents;  // the nodes for which they may speak
+  std::map<std::string, std::vector<std::string>> rings;   // the keys in each
   if (!options.nodes.empty() && options.names.empty())
     throw ConfigError("--nodes: names of the agents are missing");
-  for (const auto& name : options.names)
+  for (const auto& name : options.names) {
     if (const auto fault = fault_of_name(name))
       throw ConfigError("names: " + *fault + ", got " + printable(name));
-  for (const auto& name : options.names)
     if (!options.nodes.empty()) agents[name] = options.nodes;
+  }
   if (!options.scenario.empty()) {
     names.insert(names.end(), {"time-master", broker_name});
     const Scenario scenario = load_scenario(options.scenario);

@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/paths.h"
@@ -137,9 +139,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   std::vector<Pass> passes = passes_of(batch, track, found.intervals, threads);
   progress.clear_line();
   std::erase_if(passes, [&](const Pass& p) { return !wanted(p, options); });
-  std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {
-    return a.rise.time != b.rise.time ? a.rise.time < b.rise.time : a.object < b.object;
-  });
+  std::ranges::sort(passes, {}, [](const Pass& p) { return std::tuple(p.rise.time, p.object); });
   if (first) print_notes(lost_notes(found, population, clock), " without a state");
 
   const PassList list{sensor, clock, population.elements, passes, tells_excluded};
@@ -148,10 +148,8 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   } else if (options.jsonl) {
     std::fputs(pass_jsonl(list).c_str(), stdout);
   } else {
-    std::vector<std::uint32_t> objects;
-    for (const Pass& p : passes) objects.push_back(p.object);
-    std::sort(objects.begin(), objects.end());
-    objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+    std::set<std::uint32_t> objects;
+    for (const Pass& p : passes) objects.insert(p.object);
     std::printf("%s%s, %s to %s: %zu passes of %zu objects%s\n", first ? "" : "\n",
                 sensor.name.c_str(), format_utc(clock.utc(grid.from), 0).c_str(),
                 format_utc(clock.utc(grid.last()), 0).c_str(), passes.size(), objects.size(),

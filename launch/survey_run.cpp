@@ -1,13 +1,13 @@
 #include "launch/survey_run.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
@@ -31,15 +31,10 @@ constexpr double most_choice_bytes = 4e9;
 /// K of "sites=K"; 0 without the option. `sites`: candidates.
 std::size_t wanted_sites(const std::string& text, std::size_t sites) {
   if (text.empty()) return 0;
-  const std::string key = "sites=";
-  std::size_t count = 0;
-  const char* end = text.data() + text.size();
-  bool good = text.starts_with(key);
-  if (good) {
-    const auto [stop, error] = std::from_chars(text.data() + key.size(), end, count);
-    good = error == std::errc() && stop == end && count >= 1 && count <= sites;
-  }
-  if (!good)
+  constexpr std::string_view key = "sites=";
+  const std::size_t count =
+      text.starts_with(key) ? parse_count(text.substr(key.size())).value_or(0) : 0;
+  if (count < 1 || count > sites)
     throw ConfigError("--optimise: must be sites=K, K in 1.." + std::to_string(sites) +
                       ", the places of the scenario's sensors on the ground, got " +
                       printable(text));

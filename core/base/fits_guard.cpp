@@ -1,13 +1,11 @@
 #include "core/base/fits_guard.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdint>
 #include <cstdlib>
 #include <iterator>
-#include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 
 namespace dmise {
 
@@ -41,10 +39,7 @@ double checked_value(std::string_view card, bool divides, const std::string& nam
   while (value.ends_with(' ')) value.remove_suffix(1);
   // CFITSIO makes a whole number of texts and of fractions, too: those may be 0.
   if (card.starts_with("ZTILE") || (divides && card.starts_with("ZVAL"))) {
-    std::uint32_t whole = 0;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), whole);
-    if (card.substr(8, 1) != "=" || error != std::errc() || end != value.data() + value.size() ||
-        whole == 0)
+    if (card.substr(8, 1) != "=" || parse_count(value).value_or(0) == 0)
       fail("must be a whole number > 0");
   }
   if (quoted && std::any_of(std::begin(numbers), std::end(numbers),
