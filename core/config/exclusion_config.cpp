@@ -45,8 +45,7 @@ Exclusion read_exclusion(const YamlValue& value) {
   for (const Limit& limit : limits)
     if (const auto angle = map.find(limit.key)) exclusion.*limit.angle_deg = angle->number();
   if (const auto action = map.find("action"))
-    exclusion.action =
-        action->choice() == "flag" ? ExclusionAction::flag : ExclusionAction::close_shutter;
+    exclusion.action = action->chosen({ExclusionAction::flag, ExclusionAction::close_shutter});
   map.done();
   if (!exclusion.any()) value.fail("needs one of sun_deg, moon_deg or earth_limb_deg", false);
   return exclusion;

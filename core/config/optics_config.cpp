@@ -170,16 +170,11 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
   if (const auto v = of_pupil("most_screens")) s.most_screens = int(v->integer());
   if (const auto v = map.find("oversampling")) s.oversampling = int(v->integer());
   if (const auto v = map.find("support_px")) s.support_px = int(v->integer());
-  if (const auto v = map.find("method")) {
-    const std::string name = v->choice();
-    s.method = name == "auto"      ? PointSpread::Method::automatic
-               : name == "deposit" ? PointSpread::Method::deposit
-               : name == "direct"  ? PointSpread::Method::direct
-                                   : PointSpread::Method::transform;
-  }
+  using Method = PointSpread::Method;
+  if (const auto v = map.find("method"))
+    s.method = v->chosen({Method::automatic, Method::deposit, Method::direct, Method::transform});
   if (const auto v = map.find("resampling"))
-    s.resampling =
-        v->choice() == "area" ? PointSpread::Resampling::area : PointSpread::Resampling::bilinear;
+    s.resampling = v->chosen({PointSpread::Resampling::area, PointSpread::Resampling::bilinear});
   return s;
 }
 

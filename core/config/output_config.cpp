@@ -82,17 +82,15 @@ OutputConfig read_output(const YamlValue& value) {
   }
   if (const auto planes = map.find("planes"))
     for (const auto& plane : planes->list()) {
-      const std::string name = plane.choice();
-      (name == "sources"      ? output.sources
-       : name == "background" ? output.background
-                              : output.noise) = true;
+      const auto flag =
+          plane.chosen({&OutputConfig::sources, &OutputConfig::background, &OutputConfig::noise});
+      output.*flag = true;
     }
   if (const auto positions = map.find("positions"))
     for (const auto& format : positions->list()) {
-      const std::string name = format.choice();
-      (name == "csv"     ? output.positions_csv
-       : name == "jsonl" ? output.positions_jsonl
-                         : output.positions_oem) = true;
+      const auto flag = format.chosen({&OutputConfig::positions_csv, &OutputConfig::positions_jsonl,
+                                       &OutputConfig::positions_oem});
+      output.*flag = true;
     }
   if (const auto frame = map.find("positions_frame")) {
     output.positions_enu = frame->choice() == "enu";

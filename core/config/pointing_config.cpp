@@ -1,6 +1,5 @@
 #include "core/config/pointing_config.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -201,7 +200,7 @@ PointCued read_cued(const YamlValue& value) {
   c.slew_deg_per_s = map.number_or("slew_deg_per_s", c.slew_deg_per_s);
   c.slew_deg_per_s2 = map.number_or("slew_deg_per_s2", c.slew_deg_per_s2);
   if (const auto mount = map.find("mount"))
-    c.mount = mount->choice() == "altazimuth" ? MountKind::altazimuth : MountKind::great_circle;
+    c.mount = mount->chosen({MountKind::great_circle, MountKind::altazimuth});
   for (const char* key : {"azimuth_deg_per_s", "azimuth_deg_per_s2", "azimuth_range_deg"})
     if (const auto axis = map.find(key); axis && c.mount != MountKind::altazimuth)
       axis->fail("is of an altazimuth mount; set mount: altazimuth", false);
@@ -331,8 +330,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
   const bool moves = turn_rate_deg_per_s(sensor.pointing) > 0.0;
   sensor.tracking = moves || scan ? Tracking::moving : natural;
   if (const auto tracking = map.find("tracking")) {
-    const auto named = std::ranges::find(tracking_names, tracking->choice());
-    sensor.tracking = Tracking(named - std::begin(tracking_names));
+    sensor.tracking =
+        tracking->chosen({Tracking::fixed, Tracking::sidereal, Tracking::target, Tracking::moving});
     if (sensor.tracking == Tracking::target && !target && !cued)
       tracking->fail("there is no target to track", false);
     if (sensor.tracking == Tracking::moving && !moves && !scan)

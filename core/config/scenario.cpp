@@ -195,13 +195,9 @@ void read_environment(const YamlValue& value, EnvironmentConfig& environment) {
 void read_network(const YamlValue& value, NetworkConfig& network) {
   YamlMap map(value, network_section());
   network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4));
-  if (const auto policy = map.find("on_silent_node")) {
-    const std::string name = policy->choice();
-    network.on_silent_node = name == "fail"   ? OnSilentNode::fail
-                             : name == "wait" ? OnSilentNode::wait
-                             : name == "drop" ? OnSilentNode::drop
-                                              : OnSilentNode::restart;
-  }
+  if (const auto policy = map.find("on_silent_node"))
+    network.on_silent_node = policy->chosen(
+        {OnSilentNode::fail, OnSilentNode::wait, OnSilentNode::drop, OnSilentNode::restart});
   network.silent_after_s = map.number_or("silent_after_s", 5.0);
   network.restarts = static_cast<int>(map.integer_or("restarts", 5));
   network.real_time = map.number_or("real_time", 0.0);

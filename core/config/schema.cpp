@@ -75,16 +75,12 @@ class SchemaWriter {
   void members(const Section& section) {
     json_.field("description", section.what).field("type", "object");
     json_.key("properties").begin_object();
-    for (const Key& key : section.keys) {
-      json_.key(key.name).begin_object();
-      property(key);
-      json_.end_object();
-    }
+    for (const Key& key : section.keys) property(key);
     json_.end_object();
     if (section.any_other) {
-      json_.key("patternProperties").begin_object().key(section.any_other->name).begin_object();
+      json_.key("patternProperties").begin_object();
       property(*section.any_other);
-      json_.end_object().end_object();
+      json_.end_object();
     }
     json_.field("additionalProperties", false).key("required").begin_array();
     for (const Key& key : section.keys)
@@ -93,6 +89,7 @@ class SchemaWriter {
   }
 
   void property(const Key& key) {
+    json_.key(key.name).begin_object();
     json_.field("description",
                 key.what + (key.otherwise.empty() ? "" : " Default: " + key.otherwise + "."));
     if (has(key.forms, Kind::flag) && (key.otherwise == "on" || key.otherwise == "off")) {
@@ -103,6 +100,7 @@ class SchemaWriter {
       json_.field("default", key.otherwise);
     }
     forms(key.forms);
+    json_.end_object();
   }
 
   void forms(const Forms& forms) {

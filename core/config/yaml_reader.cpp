@@ -186,6 +186,13 @@ std::string YamlValue::choice(std::span<const std::string_view> choices) const {
   return word;
 }
 
+std::size_t YamlValue::choice_index(std::size_t count) const {
+  const std::string word = choice();
+  const auto& words = form(Form::Kind::choice)->words;
+  if (words.size() != count) section_lacks("the meaning of each choice of " + path_);
+  return std::size_t(std::ranges::find(words, word) - words.begin());
+}
+
 std::vector<YamlValue> YamlValue::list() const {
   const Form* is = form(Form::Kind::list);
   if (!is_list()) fail("must be a list");

@@ -49,6 +49,11 @@ class YamlValue {
   std::string choice(std::initializer_list<std::string_view> choices) const {
     return choice(std::span(choices.begin(), choices.size()));
   }
+  /// The meaning of the choice, of those of all choices of the value's section in their order.
+  template <class Meaning>
+  Meaning chosen(std::initializer_list<Meaning> meanings) const {
+    return meanings.begin()[choice_index(meanings.size())];
+  }
   std::vector<YamlValue> list() const;
   /// A list of numbers, with ranges and, if it has one, the length of the value's section.
   std::vector<double> numbers() const;
@@ -71,6 +76,7 @@ class YamlValue {
   /// Returns the form of its section that a reader asks for. Throws `std::logic_error` if the
   /// section has none; null for a value of no section.
   const Form* form(Form::Kind kind) const;
+  std::size_t choice_index(std::size_t count) const;
 
   YAML::Node node_;
   std::shared_ptr<const std::string> file_;
