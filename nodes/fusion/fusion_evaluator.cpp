@@ -47,18 +47,17 @@ FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
       clock_(std::move(clock)),
       directory_(directory),
       journal_(fusion_journal_path(directory)) {
+  std::vector<CuedSensor> cued;
   for (const SensorConfig& sensor : scenario.sensors) {
+    if (auto one = cued_sensor(sensor)) {
+      cued_.push_back(one->name);
+      cued.push_back(std::move(*one));
+    }
     if (!sensor.detect) continue;
     const Optics& optics = sensor.camera.optics;
     cameras_[sensor.name] = {optics.columns, optics.rows,
                              std::min(half_diagonal_rad(optics) + axis_slack_rad, pi)};
   }
-  std::vector<CuedSensor> cued;
-  for (const SensorConfig& sensor : scenario.sensors)
-    if (auto one = cued_sensor(sensor)) {
-      cued_.push_back(one->name);
-      cued.push_back(std::move(*one));
-    }
   if (!cued.empty())
     scheduler_.emplace(clock_, SimTime{scenario.duration.ns / 2}, std::move(cued),
                        scenario.duration, scenario.fusion->settings.detection_probability);

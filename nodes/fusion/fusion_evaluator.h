@@ -61,7 +61,7 @@ class FusionEvaluator : public Evaluator {
   std::map<std::string, Camera> cameras_;
   std::optional<Fusion> fusion_;  // once the roster is known
   FusionJournal journal_;
-  std::vector<std::string> cued_;       // names of sensors, sorted
+  std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
   std::optional<LineFile> tracks_, tasks_;
   bool begun_ = false;
