@@ -18,6 +18,10 @@ inline constexpr double even_snr = 25.0, even_snr_per_px = 5.0;
 // Deviance by which a short streak must beat two blended stars; a point that is no star; a row of
 // two to four stars, corrected for chance.
 inline constexpr double blend_margin = 16.0, line_margin = 8.0, chain_margin = 6.0;
+// SNR over the root of the length of a streak [px], below which its ends are lost in noise.
+inline constexpr double faint_per_px = 4.0;
+// Longest blend of stars, without their trails, that pixels above the threshold may be.
+inline constexpr double chain_px = 30.0;
 // Relative error of the PSF in comparisons of shape.
 inline constexpr double model_error = 0.03;
 // The same for the wings of a saturated source: per square of the sigma at which they begin, with

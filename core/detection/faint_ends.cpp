@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/detection/detection_limits.h"
 #include "core/detection/line_between.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
@@ -12,7 +13,6 @@
 namespace dmise {
 namespace {
 
-constexpr double faint_per_px = 4.0;      // SNR over the root of the length; brighter ends are seen
 constexpr double least_beyond_px = 24.0;  // beyond an end, where light may be its own
 constexpr double negligible = 20.0;       // logarithm of odds
 constexpr int turns = 3;                  // to each side, by so much at the ends:
@@ -25,7 +25,8 @@ constexpr double most_residual2 = 16.0;  // that a pixel counts, over its varian
 
 bool has_faint_ends(const Source& source) {
   return source.streak && !source.saturated &&
-         source.snr() < faint_per_px * std::sqrt(std::max(source.trail().length_px, 4.0));
+         source.snr() <
+             detection_limits::faint_per_px * std::sqrt(std::max(source.trail().length_px, 4.0));
 }
 
 /// Calls visit(line, line between two ends, px^2 of pairs of ends that it stands for) for each pair

@@ -16,7 +16,6 @@
 namespace dmise {
 namespace {
 
-constexpr double faint_per_px = 4.0;   // SNR over the root of the length; brighter ends are seen
 constexpr double least_share = 0.4;    // of a trail that is not hidden
 constexpr double chain_px = 40.0;      // longest row of stars, without their trails
 constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
@@ -192,7 +191,7 @@ std::optional<Source> fitted_longer(const Scene& scene, const FilteredFrame& fra
 std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, const Source& source) {
   const Trail& known = source.trail();
   if (source.saturated || (!source.streak && !scene.known) ||
-      source.snr() > faint_per_px * std::sqrt(std::max(known.length_px, 4.0)))
+      source.snr() > detection_limits::faint_per_px * std::sqrt(std::max(known.length_px, 4.0)))
     return std::nullopt;
   const double known_snr = template_snr(scene, known);
   // Of a short one the direction may be that of noise.

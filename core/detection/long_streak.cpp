@@ -23,7 +23,6 @@ constexpr double worth_another_px = 50.0;  // a shorter component is given up af
 constexpr int window_px = 16;              // step of growth
 constexpr double growth_snr = 4.0;         // to continue into the next window
 constexpr double gap_snr = 6.0;            // to continue beyond a gap
-constexpr double chain_px = 30.0;          // longest blend of stars, without their trails
 constexpr double least_rise = 2.0;         // over the scatter of lines beside it, before a fit
 constexpr int most_rounds = 6;             // of fitting and growing
 
@@ -216,7 +215,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
   if (!source || source->snr() < detection_limits::least_snr) return std::nullopt;
   const Trail& t = source->trail();
   const Trail star = scene.star_trail(t.x_px, t.y_px);
-  const bool may_be_chain = t.length_px < chain_px + 3 * star.length_px;
+  const bool may_be_chain = t.length_px < detection_limits::chain_px + 3 * star.length_px;
   if (source->fit.reduced_chi2() > (may_be_chain ? 2.0 : 5.0) || !is_continuous(scene, t))
     return std::nullopt;
   if (may_be_chain && !beats_stars(scene, *source)) return std::nullopt;

@@ -10,6 +10,7 @@
 #include "core/detection/psf_star_fit.h"
 #include "core/detection/psf_stars.h"
 #include "core/detection/small_matrix.h"
+#include "core/detection/source_fit.h"
 
 namespace dmise {
 namespace {
@@ -17,10 +18,9 @@ namespace {
 constexpr std::size_t least_stars = 8, least_for_slopes = 30;
 constexpr std::size_t most_candidates = 200, most_stars = 100;
 constexpr std::size_t most_core_pixels = 12000, most_shape_pixels = 20000, least_shape_pixels = 30;
-constexpr double background_prior = 0.1;  // error of the mesh, in units of a pixel's noise
-constexpr double shape_widths = 10.0;     // reach of the shape, in units of the width
-constexpr double width_floor = 0.01;      // scatter of widths that is no change over the frame
-constexpr double trails_from_px = 1.5;    // a shorter trail can't be told from a point
+constexpr double shape_widths = 10.0;   // reach of the shape, in units of the width
+constexpr double width_floor = 0.01;    // scatter of widths that is no change over the frame
+constexpr double trails_from_px = 1.5;  // a shorter trail can't be told from a point
 // Rings of an obscured aperture are no Gaussian, by ten times the noise of a bright star.
 constexpr double most_reduced_chi2 = 40.0, most_of_median_chi2 = 3.0;
 constexpr double outlier_scatters = 4.0;
@@ -52,10 +52,6 @@ bool is_whole(const Scene& scene, const Component& c) {
     for (int x = run.first_x; x <= run.last_x; ++x)
       if (!scene.is_usable(x, run.y)) return false;
   return true;
-}
-
-double background_sigma_e(const FitPixel& pixel) {
-  return background_prior * std::sqrt(double(pixel.variance_e2));
 }
 
 /// Fits of candidates that are stars: as long as a star's trail, not a point.

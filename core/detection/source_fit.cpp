@@ -9,11 +9,10 @@
 namespace dmise {
 namespace {
 
-constexpr double bent_from_px = 15.0;     // shorter streaks are straight
-constexpr double sloped_from_px = 15.0;   // and uniformly bright
-constexpr int most_rounds = 8;            // of fitting and rejecting
-constexpr double settled_px = 0.5;        // convergence of the ends
-constexpr double background_prior = 0.1;  // error of the mesh, in units of a pixel's noise
+constexpr double bent_from_px = 15.0;    // shorter streaks are straight
+constexpr double sloped_from_px = 15.0;  // and uniformly bright
+constexpr int most_rounds = 8;           // of fitting and rejecting
+constexpr double settled_px = 0.5;       // convergence of the ends
 
 /// Whether a pixel within one pixel of the line is clipped.
 bool is_saturated(const Scene& scene, const Trail& trail) {
@@ -149,6 +148,10 @@ std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double
   return out;
 }
 
+double background_sigma_e(const FitPixel& pixel) {
+  return 0.1 * std::sqrt(double(pixel.variance_e2));
+}
+
 bool plausible(const Scene& scene, const Trail& t) {
   return std::isfinite(t.x_px + t.y_px + t.flux_e + t.length_px + t.angle_rad) && t.flux_e > 0 &&
          t.x_px > -1 && t.y_px > -1 && t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
@@ -202,7 +205,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     FitSettings settings;
     settings.psf = psf;
     settings.model_error = model_error;
-    settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
+    settings.background_sigma_e = background_sigma_e(pixels.front());
     settings.most_steps = 20;
     // Nothing has changed since the round before.
     const bool same_psf = round + 1 != least_rounds || draft || scene.psf.is_round_gaussian();

@@ -40,6 +40,9 @@ std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
                                        std::span<const Trail> trails, double background_e,
                                        double tolerance, const Psf& psf);
 
+/// Error of the background's mesh at a pixel, the prior of a constant background of fits.
+double background_sigma_e(const FitPixel& pixel);
+
 /// Whether a trail is finite, of positive flux and centred in the frame.
 bool plausible(const Scene& scene, const Trail& trail);
 

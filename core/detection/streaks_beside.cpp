@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/units.h"
 #include "core/detection/detection_limits.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
@@ -22,7 +23,6 @@ constexpr double least_share = 0.1;             // of the amplitude of both that
 constexpr double least_overlap = 0.5;           // of the shorter's length
 constexpr double most_turn_rad = 0.1;
 constexpr double bent_from_px = 100.0;
-constexpr double chain_px = 30.0;  // longest blend of stars, without their trails
 
 /// Light across a line, per pixel of the frame.
 struct Profile {
@@ -153,8 +153,7 @@ Source part_of(const TrailFit& fit, std::size_t which, unsigned free, std::size_
 
 /// Whether two trails are alongside each other, apart and of nearly one direction.
 bool are_beside(const Trail& a, const Trail& b, double sigma_px) {
-  if (std::abs(std::remainder(a.angle_rad - b.angle_rad, std::acos(-1.0))) > most_turn_rad)
-    return false;
+  if (std::abs(std::remainder(a.angle_rad - b.angle_rad, pi)) > most_turn_rad) return false;
   const double c = std::cos(a.angle_rad), s = std::sin(a.angle_rad);
   const double along = (b.x_px - a.x_px) * c + (b.y_px - a.y_px) * s;
   const double across = (b.y_px - a.y_px) * c - (b.x_px - a.x_px) * s;
@@ -170,7 +169,8 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   const PixelPosition at{one.x_px, one.y_px};
   const double sigma_px = scene.psf.sigma_at(at), reach_px = reach_sigmas * sigma_px;
   const Trail star = scene.star_trail(one.x_px, one.y_px);
-  if (one.length_px < std::max(chain_px + 3 * star.length_px, 8 * sigma_px)) return {};
+  if (one.length_px < std::max(detection_limits::chain_px + 3 * star.length_px, 8 * sigma_px))
+    return {};
   auto pixels = pixels_near(scene, one, reach_px + 2.5 * sigma_px);
   if (pixels.size() < 50) return {};
   const Line line = line_of(one);
@@ -192,7 +192,7 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   FitSettings fit_settings;
   fit_settings.psf = scene.psf.at(at);
   fit_settings.model_error = detection_limits::model_error;
-  fit_settings.background_sigma_e = 0.1 * std::sqrt(double(pixels.front().variance_e2));
+  fit_settings.background_sigma_e = background_sigma_e(pixels.front());
   fit_settings.most_steps = 30;
   const unsigned free = one.length_px > bent_from_px ? trail_line | trail_sagitta : trail_line;
   TrailFit fit;

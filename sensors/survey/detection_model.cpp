@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/golden_section.h"
+#include "core/detection/detection_limits.h"
 #include "core/score/matched_filter.h"
 
 namespace dmise {
@@ -30,9 +31,8 @@ Curve curve_at(const std::vector<DetectionModel::Node>& nodes, double px) {
 /// The length that a trail counts as among stars that trail: where they trail by more than where
 /// detection was measured, the more it differs from them the longer.
 double length_among_trails_px(const ExpectedTrail& trail) {
-  constexpr double least_difference_px = 1.5;  // as of detection
-  constexpr double longer_by = 4.0;            // for each pixel of a longer star's trail
-  if (trail.unlike_px < least_difference_px) return trail.length_px;
+  constexpr double longer_by = 4.0;  // for each pixel of a longer star's trail
+  if (trail.unlike_px < detection_limits::least_difference_px) return trail.length_px;
   const double beyond_px = trail.star_px - DetectionModel::usual_star_px;
   return std::max(
       {trail.length_px, trail.unlike_px - DetectionModel::usual_star_px, longer_by * beyond_px});
