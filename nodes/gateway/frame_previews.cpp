@@ -85,8 +85,8 @@ struct FramePreviews::Work {
     bool silent = false;  // gave no answer: the directory is searched first
   };
 
-  Work(const std::string& keys, const std::string& name, PreviewDirectory files)
-      : security(keys, name), directory(std::move(files)), thread([this] { run(); }) {}
+  Work(const std::string& keys, const std::string& name, std::string run_directory)
+      : security(keys, name), directory(std::move(run_directory)), thread([this] { run(); }) {}
   ~Work() {
     quit.set();
     news.set();
@@ -149,7 +149,7 @@ struct FramePreviews::Work {
     if (SharedPreview png = cache.find(request.frame)) return request.answer(png);
     const auto at = lines.find(sensor);
     if (at == lines.end() || at->second.silent)
-      if (SharedPreview png = directory.find(sensor, frame)) return request.answer(png);
+      if (SharedPreview png = read_preview(directory, sensor, frame)) return request.answer(png);
     if (at == lines.end() || frame == 0) return request.answer(nullptr);  // they count from 1
     for (Wanted& wanted : at->second.wanted)
       if (wanted.frame == frame) return wanted.answers.push_back(std::move(request.answer));
@@ -208,7 +208,7 @@ struct FramePreviews::Work {
     const Wanted wanted = std::move(line.wanted.front());
     line.wanted.pop_front();
     line.asked.reset();
-    if (!png) png = directory.find(sensor, wanted.frame);
+    if (!png) png = read_preview(directory, sensor, wanted.frame);
     for (const Answer& answer : wanted.answers) answer(png);
   }
 
@@ -223,7 +223,7 @@ struct FramePreviews::Work {
   }
 
   Security security;
-  PreviewDirectory directory;
+  std::string directory;  // of the run
   zmq::context_t context{1};
   std::map<std::string, Line> lines;  // by sensor
   std::uint64_t run_id = 0;
@@ -237,7 +237,7 @@ struct FramePreviews::Work {
 };
 
 FramePreviews::FramePreviews(const std::string& keys, const std::string& name,
-                             PreviewDirectory directory)
+                             std::string directory)
     : work_(std::make_unique<Work>(keys, name, std::move(directory))) {}
 
 FramePreviews::~FramePreviews() = default;

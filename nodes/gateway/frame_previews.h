@@ -17,8 +17,9 @@ std::string draw_preview(std::string_view fits);
 /// not serve is read from the run's directory. Has a thread of its own.
 class FramePreviews : public PreviewSource {
  public:
-  /// `keys`, `name`: as in `RunObserverOptions`. Throws `ConfigError` for keys that cannot be used.
-  FramePreviews(const std::string& keys, const std::string& name, PreviewDirectory directory);
+  /// `keys`, `name`: as in `RunObserverOptions`. `directory`: of the run; may be empty. Throws
+  /// `ConfigError` for keys that cannot be used.
+  FramePreviews(const std::string& keys, const std::string& name, std::string directory);
   ~FramePreviews() override;
   FramePreviews(const FramePreviews&) = delete;
   FramePreviews& operator=(const FramePreviews&) = delete;

@@ -58,7 +58,7 @@ int serve(const CommonFlags& flags, const GatewayOptions& options) {
 
   LatestMessages latest;
   ViewHistory history;
-  FramePreviews previews(flags.keys, flags.name, PreviewDirectory(options.products));
+  FramePreviews previews(flags.keys, flags.name, options.products);
   RunObserver observer({.name = flags.name,
                         .master = flags.master,
                         .keys = flags.keys,

@@ -19,17 +19,9 @@ class PreviewSource {
   virtual void request(const std::string& sensor, std::uint32_t frame, Answer answer) = 0;
 };
 
-/// Previews in the directory of a run: SENSOR/frame-000001.png.
-class PreviewDirectory {
- public:
-  static constexpr std::size_t max_bytes = std::size_t(64) << 20;
-
-  /// `directory`: empty if there is none.
-  explicit PreviewDirectory(std::string directory) : directory_(std::move(directory)) {}
-  SharedPreview find(const std::string& sensor, std::uint32_t frame) const;
-
- private:
-  std::string directory_;
-};
+/// Reads the preview SENSOR/frame-000001.png in the directory of a run; null if there is none, or
+/// if `directory` is empty.
+SharedPreview read_preview(const std::string& directory, const std::string& sensor,
+                           std::uint32_t frame);
 
 }  // namespace dmise

@@ -75,16 +75,15 @@ std::string preview_of(FramePreviews& previews, const std::string& sensor, std::
   return found ? *found : "";
 }
 
-TEST(PreviewDirectory, HasPicturesOfItsSensorsAlone) {
+TEST(ReadPreview, HasPicturesOfItsSensorsAlone) {
   const RunDirectory run;
-  const PreviewDirectory directory(run.path);
-  ASSERT_TRUE(directory.find("alpha", 3));
-  EXPECT_EQ(*directory.find("alpha", 3), png);
-  EXPECT_FALSE(directory.find("alpha", 4));
-  EXPECT_FALSE(directory.find("alpha", 5));
+  ASSERT_TRUE(read_preview(run.path, "alpha", 3));
+  EXPECT_EQ(*read_preview(run.path, "alpha", 3), png);
+  EXPECT_FALSE(read_preview(run.path, "alpha", 4));
+  EXPECT_FALSE(read_preview(run.path, "alpha", 5));
   for (const char* sensor : {"", ".", "..", "../dmise-previews/alpha", "alpha/../alpha", "beta"})
-    EXPECT_FALSE(directory.find(sensor, 3)) << sensor;
-  EXPECT_FALSE(PreviewDirectory("").find("alpha", 3));
+    EXPECT_FALSE(read_preview(run.path, sensor, 3)) << sensor;
+  EXPECT_FALSE(read_preview("", "alpha", 3));
 }
 
 TEST(DrawPreview, ShowsTheStarWhereItIs) {
@@ -104,7 +103,7 @@ TEST(FramePreviews, AreDrawnOfWhatTheSensorServes) {
   const RunDirectory run;
   Sensor sensor;
   sensor.add(2, fits_with_star_at(20, 20));
-  FramePreviews previews("", "gateway", PreviewDirectory(run.path));
+  FramePreviews previews("", "gateway", run.path);
   previews.follow(run_id, {{"alpha", sensor.address}});
   const std::string found = preview_of(previews, "alpha", 2);
   EXPECT_EQ(found, draw_preview(fits_with_star_at(20, 20)));
@@ -122,7 +121,7 @@ TEST(FramePreviews, ManyAreAnsweredInTheirOrder) {
   Sensor sensor;
   for (std::uint32_t frame = 1; frame <= 5; ++frame)
     sensor.add(frame, fits_with_star_at(20 * int(frame), 20));
-  FramePreviews previews("", "gateway", PreviewDirectory(""));
+  FramePreviews previews("", "gateway", "");
   previews.follow(run_id, {{"alpha", sensor.address}});
   std::vector<std::promise<SharedPreview>> answers(30);
   for (std::size_t i = 0; i < answers.size(); ++i)
@@ -138,7 +137,7 @@ TEST(FramePreviews, OfASensorThatIsSilentOrGoneAreThoseOfTheDirectory) {
   zmq::context_t context;
   zmq::socket_t silent = make_socket(context, zmq::socket_type::router, max_question_bytes);
   const std::string address = bind_to(silent, "tcp://127.0.0.1:0");
-  FramePreviews previews("", "gateway", PreviewDirectory(run.path));
+  FramePreviews previews("", "gateway", run.path);
   previews.follow(run_id, {{"alpha", address}});
   EXPECT_EQ(preview_of(previews, "alpha", 3), png);
   EXPECT_EQ(preview_of(previews, "alpha", 4), "");
@@ -150,10 +149,10 @@ TEST(FramePreviews, AreEncryptedWhereThereAreKeys) {
   const test::Keys keys({"alpha", "gateway"}), foreign({"alpha", "gateway"});
   Sensor sensor(keys.directory);
   sensor.add(2, fits_with_star_at(20, 20));
-  FramePreviews own(keys.directory, "gateway", PreviewDirectory(""));
+  FramePreviews own(keys.directory, "gateway", "");
   own.follow(run_id, {{"alpha", sensor.address}});
   EXPECT_NE(preview_of(own, "alpha", 2), "");
-  FramePreviews other(foreign.directory, "gateway", PreviewDirectory(""));
+  FramePreviews other(foreign.directory, "gateway", "");
   other.follow(run_id, {{"alpha", sensor.address}});
   EXPECT_EQ(preview_of(other, "alpha", 2), "");
   EXPECT_EQ(sensor.loaded, 1);
