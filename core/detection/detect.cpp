@@ -135,12 +135,13 @@ FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& heade
 }
 
 FrameReport make_report(const CountImage& counts, const FrameHeader& header,
-                        const Background& background, const PsfField& psf, double threshold_snr) {
+                        const Background& background, const PsfField& psf) {
   const double sigma_px = psf.at(centre_of(counts)).equivalent_sigma_px();
   FrameReport r = unmeasured_report(counts, header);
   r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
-  const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
+  const double least_e =
+      detection_limits::seed_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
   r.limiting_magnitude = r.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
                          extinction_mag(header, centre_of(counts));
   r.psf_fwhm_px = fwhm_before_pixel(sigma_px);
@@ -195,7 +196,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   const std::vector<Source> others = judged.sources;
   for (Source& source : judged.sources)
     source = with_likelier_ends(scene, std::move(source), others);
-  result.report = make_report(counts, header, background, scene.psf, detection_limits::seed_snr);
+  result.report = make_report(counts, header, background, scene.psf);
   result.report.star_like = judged.star_like;
   result.report.stars_expected = std::uint32_t(result.stars.expected);
   result.report.stars_found = std::uint32_t(result.stars.found);

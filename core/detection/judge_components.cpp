@@ -40,16 +40,16 @@ bool is_long(const Scene& scene, const Component& c) {
   return extent_px > limit_px && (extent_px > limit_px + 20 || elongation(c) > 2);
 }
 
-/// Whether a component is no more than hidden stars and their wings: what rises above `seed_snr`
-/// beside them touches them.
-bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c, double seed_snr) {
+/// Whether a component is no more than hidden stars and their wings: what rises above the seed's
+/// SNR beside them touches them.
+bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c) {
   const auto touches_hidden = [&](int x, int y) {
     for (int py = std::max(0, y - 1); py <= std::min(frame.rows - 1, y + 1); ++py)
       for (int px = std::max(0, x - 1); px <= std::min(frame.columns - 1, x + 1); ++px)
         if (frame.row(py)[px] == 0) return true;
     return false;
   };
-  const int seed = int(seed_snr * FilteredFrame::steps);
+  const int seed = int(detection_limits::seed_snr * FilteredFrame::steps);
   for (const Run& run : c.runs)
     for (int x = run.first_x; x <= run.last_x; ++x)
       if (frame.row(run.y)[x] >= seed && !touches_hidden(x, run.y)) return false;
@@ -70,7 +70,7 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& c = components[i];
     const bool lengthy = is_long(scene, c);
-    if (!lengthy && scene.known && is_of_hidden_stars(filtered, c, detection_limits::seed_snr)) {
+    if (!lengthy && scene.known && is_of_hidden_stars(filtered, c)) {
       ++out.star_like;
       out.reach_px[i] = 0;  // their wings are hidden
     } else {
