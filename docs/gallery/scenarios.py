@@ -43,9 +43,9 @@ def words(name):
             lines.append(line[1:].strip())
     command = "dataset" if name == "dataset" else "survey" if name.startswith("survey") else \
         "visible" if name == "figure5" else "run"
-    told = re.sub(r"(\./)?(dmise \w+ launch/\S+( --?\S+( [^-\s.]\S*)?)*)", r"`\2`", " ".join(lines))
-    told = re.sub(r"docs/(\S+?\.md)", r"[\1](\1)", told)
-    return told, f"dmise {command} launch/scenarios/{name}.yaml" + (" --seeds 1..10" if name == "dataset" else "")
+    description = re.sub(r"(\./)?(dmise \w+ launch/\S+?( --?\S+?( [^-\s.]\S*?)?)*)(?=[.:,]?(\s|$))", r"`\2`", " ".join(lines))
+    description = re.sub(r"docs/(\S+?\.md)", r"[\1](\1)", description)
+    return description, f"dmise {command} launch/scenarios/{name}.yaml" + (" --seeds 1..10" if name == "dataset" else "")
 
 
 def picture(name):
@@ -59,8 +59,8 @@ def page():
     text = ("# Scenarios that are shipped\n\nIn a checkout they are in `launch/scenarios`, of an installed package in\n"
             "`/usr/share/dmise/launch/scenarios`. Written by `docs/gallery/scenarios.py`.\n")
     for name in names():
-        told, command = words(name)
-        text += f"\n## {name}\n\n{told}\n\n    {command}\n"
+        description, command = words(name)
+        text += f"\n## {name}\n\n{description}\n\n    {command}\n"
         if shown := picture(name):
             text += f"\n![{name}]({shown})\n"
     return text

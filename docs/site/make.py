@@ -20,7 +20,7 @@ BESIDE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")  # page
 LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
 # Chapters of the site; what no chapter names stands in the last one.
 CHAPTERS = (
-    ("Begin", ("README.md", "docs/install.md", "docs/tutorial.md", "docs/gallery.md")),
+    ("Getting started", ("README.md", "docs/install.md", "docs/tutorial.md", "docs/gallery.md")),
     ("How to", ("docs/howto/design-a-sensor.md", "docs/howto/write-a-tracker.md", "docs/howto/make-a-data-set.md",
                 "docs/howto/operate-a-network.md")),
     ("Reference", ("docs/reference/scenario.md", "docs/reference/camera.md", "docs/reference/site.md",
@@ -28,7 +28,7 @@ CHAPTERS = (
                    "docs/datasets.md", "docs/operations.md", "docs/stack.md")),
     ("Models", ("docs/models/*.md",)),
     ("Results", ("docs/accuracy.md", "docs/benchmarks.md", "docs/scaling.md", "docs/paper.md")),
-    ("Inside", ("docs/architecture.md", "CONTRIBUTING.md", "docs/**/*.md", "CHANGELOG.md", "SECURITY.md")),
+    ("Internals", ("docs/architecture.md", "CONTRIBUTING.md", "docs/**/*.md", "CHANGELOG.md", "SECURITY.md")),
 )
 
 
