@@ -33,8 +33,9 @@ struct NormalEquations {
   template <class Gradient>
   void add(double weight, const Gradient& gradient, double value) {
     for (std::size_t i = 0; i < gradient.size(); ++i) {
-      right[i] += weight * gradient[i] * value;
-      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight * gradient[i] * gradient[j];
+      const double weighted = weight * gradient[i];
+      right[i] += weighted * value;
+      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weighted * gradient[j];
     }
   }
 };
