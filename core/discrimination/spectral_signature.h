@@ -4,8 +4,6 @@ namespace dmise {
 /// A value with its standard deviation.
 struct Measured {
   double value = 0.0, sigma = 0.0;
-
-  double snr() const { return sigma > 0.0 ? value / sigma : 0.0; }
 };
 
 /// Electrons that the Sun itself at 1 au would give in an exposure: the factor between a flux and

@@ -8,13 +8,6 @@
 #include "core/photometry/magnitude.h"
 
 namespace dmise {
-namespace {
-
-double magnitude_or_darkest(double light) {
-  return light > 0 ? std::min(sun_v_mag + magnitude_of_light(light), darkest_mag) : darkest_mag;
-}
-
-}  // namespace
 
 double diffuse_phase_function(double phase_rad) {
   const double from_dark = std::clamp(pi - phase_rad, 0.0, pi);
@@ -39,7 +32,8 @@ double diffuse_sphere_light(const DiffuseSphere& sphere, const Illumination& see
 }
 
 double diffuse_sphere_magnitude(const DiffuseSphere& sphere, const Illumination& seen) {
-  return magnitude_or_darkest(diffuse_sphere_light(sphere, seen));
+  const double light = diffuse_sphere_light(sphere, seen);
+  return light > 0 ? std::min(sun_v_mag + magnitude_of_light(light), darkest_mag) : darkest_mag;
 }
 
 double object_photons_per_s_m2(double v_mag, const Band& band) {

@@ -47,16 +47,6 @@ Eigen::Vector2d angles_between(const Vec<Gcrs>& from, const Vec<Gcrs>& to) {
   return {angle * east / sine, angle * north / sine};
 }
 
-AngleObservation observation_of(SimTime time, const Vec<Gcrs>& sensor_m, double ra_rad,
-                                double dec_rad, double sigma_rad) {
-  AngleObservation out;
-  out.time = time;
-  out.sensor_m = sensor_m;
-  out.direction = from_spherical<Gcrs>(ra_rad, dec_rad);
-  out.covariance_rad2 = {sigma_rad * sigma_rad, 0, sigma_rad * sigma_rad};
-  return out;
-}
-
 std::string_view fault_of(const AngleObservation& o) {
   // Differences of two times must be times.
   constexpr std::int64_t longest_ns = std::int64_t(1) << 61;

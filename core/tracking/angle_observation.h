@@ -23,9 +23,6 @@ struct AngleObservation {
   std::string sensor;                       // name of the sensor
   std::string detection_id;                 // of the detection, "<sensor>/<frame>/<index>"
 
-  double ra_rad() const { return to_spherical(direction)[0]; }
-  double dec_rad() const { return to_spherical(direction)[1]; }
-
   bool operator==(const AngleObservation&) const = default;
 };
 
@@ -45,10 +42,6 @@ double largest_sigma_rad(std::span<const AngleObservation> observations);
 /// Angles from `from` to `to` along east and north at `from` [rad]: the length is the angle
 /// between both, also if it is large.
 Eigen::Vector2d angles_between(const Vec<Gcrs>& from, const Vec<Gcrs>& to);
-
-/// An observation by its angles [rad] and an equal error in all directions.
-AngleObservation observation_of(SimTime time, const Vec<Gcrs>& sensor_m, double ra_rad,
-                                double dec_rad, double sigma_rad);
 
 /// The line of sight of a detection. On the ground it begins `refraction_offset_m` beside the
 /// sensor, where the line outside the air begins, and neither the mean refraction parallax nor its

@@ -85,8 +85,9 @@ struct TwoSites {
         d.id = source.observation.detection_id;
         d.sensor = frame.sensor, d.frame = frame.frame;
         d.time = frame.time;
-        d.corrected_ra_rad = source.observation.ra_rad();
-        d.corrected_dec_rad = source.observation.dec_rad();
+        const auto [ra_rad, dec_rad] = to_spherical(source.observation.direction);
+        d.corrected_ra_rad = ra_rad;
+        d.corrected_dec_rad = dec_rad;
         d.covariance_rad2 = source.observation.covariance_rad2;
         d.sensor_position_m = frame.sensor_m;
         d.magnitude = source.magnitude;

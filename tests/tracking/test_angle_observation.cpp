@@ -25,8 +25,8 @@ Detection ground_detection() {
 TEST(AngleObservation, IsTheDirectionOfTheDetection) {
   const auto seen = angle_observation(ground_detection());
   ASSERT_TRUE(seen) << seen.reason;
-  EXPECT_NEAR(seen->ra_rad(), 0.3, 1e-15);
-  EXPECT_NEAR(seen->dec_rad(), 0.5, 1e-15);
+  EXPECT_NEAR(to_spherical(seen->direction)[0], 0.3, 1e-15);
+  EXPECT_NEAR(to_spherical(seen->direction)[1], 0.5, 1e-15);
   EXPECT_EQ(seen->sensor, "atlanta");
   EXPECT_EQ(seen->detection_id, "atlanta/3/1");
   EXPECT_EQ(seen->covariance_rad2, ground_detection().covariance_rad2);

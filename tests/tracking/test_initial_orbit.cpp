@@ -16,8 +16,12 @@ using Three = std::array<AngleObservation, 3>;
 /// `ranges_m`: the book has no light time, so its light arrives later.
 AngleObservation line(double time_s, const Vec<Gcrs>& sensor_km, double ra_deg, double dec_deg,
                       double range_m) {
-  return observation_of(sim_seconds(time_s + range_m / speed_of_light_m_per_s), sensor_km * km,
-                        ra_deg * deg, dec_deg * deg, 1e-7);
+  AngleObservation out;
+  out.time = sim_seconds(time_s + range_m / speed_of_light_m_per_s);
+  out.sensor_m = sensor_km * km;
+  out.direction = from_spherical<Gcrs>(ra_deg * deg, dec_deg * deg);
+  out.covariance_rad2 = {1e-14, 0, 1e-14};
+  return out;
 }
 
 // Curtis, Orbital Mechanics for Engineering Students, examples 5.11 and 5.12: a site at 40 deg,
