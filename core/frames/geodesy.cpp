@@ -61,9 +61,4 @@ Horizontal horizontal(const Vec<Enu>& v) {
   return {azimuth, std::atan2(v.z, std::hypot(v.x, v.y))};
 }
 
-Vec<Enu> from_horizontal(const Horizontal& d) {
-  const double c = std::cos(d.elevation_rad);
-  return {std::sin(d.azimuth_rad) * c, std::cos(d.azimuth_rad) * c, std::sin(d.elevation_rad)};
-}
-
 }  // namespace dmise

@@ -47,7 +47,4 @@ Rotation<Enu, Itrs> enu_from_itrs(const Site& site);
 /// Azimuth and elevation of a vector of any length > 0. Azimuth at the zenith is 0.
 Horizontal horizontal(const Vec<Enu>& v);
 
-/// Unit vector.
-Vec<Enu> from_horizontal(const Horizontal& direction);
-
 }  // namespace dmise

@@ -8,6 +8,7 @@
 #include "core/frames/earth_orientation.h"
 #include "core/frames/geodesy.h"
 #include "core/time/iso8601.h"
+#include "tests/support/directions.h"
 
 namespace dmise::test {
 

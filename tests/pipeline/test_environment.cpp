@@ -5,6 +5,7 @@
 #include "core/sky/sun_moon.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "tests/pipeline/harness.h"
+#include "tests/support/directions.h"
 
 namespace dmise {
 namespace {

@@ -10,6 +10,7 @@
 #include "sensors/pipeline/frame_planes.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "tests/pipeline/wiring.h"
+#include "tests/support/directions.h"
 
 namespace dmise {
 namespace {

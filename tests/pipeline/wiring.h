@@ -2,6 +2,7 @@
 #include <string>
 
 #include "tests/pipeline/harness.h"
+#include "tests/support/directions.h"
 
 // Scenes for tests of what joins the models: what leaves the chain against other people's figures.
 namespace dmise::test {

@@ -8,6 +8,7 @@
 #include "core/sky/place_effects.h"
 #include "core/time/iso8601.h"
 #include "tests/support/data.h"
+#include "tests/support/directions.h"
 
 namespace dmise {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/base/units.h"
-#include "core/frames/vec.h"
+#include "core/frames/geodesy.h"
 
 namespace dmise {
 
@@ -17,6 +17,12 @@ std::vector<Vec<F>> even_directions(int count) {
     directions.push_back({r * std::cos(golden * i), r * std::sin(golden * i), z});
   }
   return directions;
+}
+
+/// Unit vector in a direction, the inverse of `horizontal`.
+inline Vec<Enu> from_horizontal(const Horizontal& d) {
+  const double c = std::cos(d.elevation_rad);
+  return {std::sin(d.azimuth_rad) * c, std::cos(d.azimuth_rad) * c, std::sin(d.elevation_rad)};
 }
 
 }  // namespace dmise
