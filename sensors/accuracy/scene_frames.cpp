@@ -51,13 +51,7 @@ SceneFrames::SceneFrames(const Scenario& scenario, const std::string& sensor, st
       world_(world_around(scenario_, this->sensor(), times_, threads)),
       stars_(load_stars(scenario_)) {}
 
-Exposure SceneFrames::exposure() const {
-  return {.seed = scenario_.seed,
-          .sensor = name_,
-          .frame = times_.frame,
-          .exposure_s = times_.seconds(),
-          .idle_s = sensor().cadence_s - sensor().exposure_s};
-}
+Exposure SceneFrames::exposure() const { return exposure_of(sensor(), times_, scenario_.seed); }
 
 std::unique_ptr<FramePipeline> SceneFrames::pipeline(const SensorConfig& as, bool planes) const {
   OutputConfig output;

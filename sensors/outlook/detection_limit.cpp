@@ -100,15 +100,9 @@ PixelBackground background_at_centre(const View& view, const DrawnStars& drawn) 
 double noise_over_sky_e(const SensorConfig& sensor, const FrameTimes& times, std::uint64_t seed,
                         double sky_e) {
   constexpr int side = 8;
-  ExpectedElectronImage light(side, side);
-  std::fill(light.pixels.begin(), light.pixels.end(), float(sky_e));
+  const ExpectedElectronImage light(side, side, float(sky_e));
   Threads threads(1);
-  const auto noise = expected_noise(light, sensor.camera.detector,
-                                    {.seed = seed,
-                                     .sensor = sensor.name,
-                                     .frame = times.frame,
-                                     .exposure_s = times.seconds(),
-                                     .idle_s = sensor.cadence_s - sensor.exposure_s},
+  const auto noise = expected_noise(light, sensor.camera.detector, exposure_of(sensor, times, seed),
                                     sensor.effects, threads);
   return double(middle_of(noise.pixels));
 }

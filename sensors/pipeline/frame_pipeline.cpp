@@ -229,11 +229,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     frame.header.accuracy = sensor.accuracy.name;
     frame.header.error = frame.plan.error;
   }
-  const Exposure exposure{.seed = settings.seed,
-                          .sensor = sensor.name,
-                          .frame = times.frame,
-                          .exposure_s = view.times().seconds(),
-                          .idle_s = sensor.cadence_s - sensor.exposure_s};
+  const Exposure exposure = exposure_of(sensor, view.times(), settings.seed);
   make_planes(settings.output, view, exposure, light, threads, frame.planes);
   if (settings.object_light)
     take_object_lights(view, times, light_sources, *optics, frame.truths, frame.planes.noise,

@@ -10,6 +10,14 @@ SimTime last_row_delay(const SensorConfig& sensor) {
   return sim_seconds(shutter.last_row_delay_s(sensor.camera.optics.rows));
 }
 
+Exposure exposure_of(const SensorConfig& sensor, const FrameTimes& times, std::uint64_t seed) {
+  return {.seed = seed,
+          .sensor = sensor.name,
+          .frame = times.frame,
+          .exposure_s = times.seconds(),
+          .idle_s = sensor.cadence_s - sensor.exposure_s};
+}
+
 ExposureSpan exposure_span(const SensorConfig& sensor, const FrameTimes& commanded) {
   const ClockError clock = acting_instrument(sensor.instrument, sensor.effects);
   const SimTime delay = last_row_delay(sensor);

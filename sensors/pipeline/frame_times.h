@@ -3,6 +3,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/config/scenario.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
@@ -27,6 +28,9 @@ inline FrameTimes frame_times(const SensorConfig& sensor, std::uint32_t frame) {
                       std::int64_t(frame - 1) * sim_seconds(sensor.cadence_s).ns};
   return {frame, start, {start.ns + length.ns / 2}, start + length};
 }
+
+/// Returns an exposure as the detector's effects see it.
+Exposure exposure_of(const SensorConfig& sensor, const FrameTimes& times, std::uint64_t seed);
 
 /// The times that a frame is made from: those of its exposure as it is commanded, and as the
 /// sensor's clock may have it.

@@ -34,8 +34,6 @@ class StarLayer {
   StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map, double faintest_v_mag);
 
   const std::shared_ptr<const StarMap>& map() const { return map_; }
-  /// V to which the catalogue goes.
-  double faintest_filled_v_mag() const { return faintest_filled_v_mag_; }
 
   /// Which stars are drawn one by one, by the limit of the catalogue's and an exposure's effects.
   DrawnStars drawn(double limit_v_mag, const EffectSet& effects) const;
@@ -65,7 +63,7 @@ class StarLayer {
   std::shared_ptr<const StarMap> map_;
   std::unique_ptr<const SyntheticStars> synthetic_;  // null: there are none
   StarLight light_;
-  double faintest_filled_v_mag_;
+  double faintest_filled_v_mag_;  // V to which the catalogue goes
 };
 
 }  // namespace dmise

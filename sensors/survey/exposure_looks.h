@@ -52,9 +52,6 @@ class SensorLooks {
   std::optional<ExposureLooks> of(const FrameTimes& commanded,
                                   std::span<const std::uint32_t> objects) const;
 
-  const SensorConfig& sensor() const { return sensor_; }
-  const SurveyScene& scene() const { return scene_; }
-
  private:
   World world_around(const FrameTimes& commanded, std::vector<std::uint32_t> objects) const;
 
