@@ -85,10 +85,7 @@ const Section& panel_section() {
 AttitudeConfig read_attitude(const YamlValue& value) {
   AttitudeConfig attitude;
   if (value.is_scalar()) {
-    if (value.choice({"nadir", "sun_tracking"}) == "nadir")
-      attitude.model = NadirAttitude{};
-    else
-      attitude.model = SunYawAttitude{};
+    attitude.model = value.chosen<Attitude>({NadirAttitude{}, SunYawAttitude{}});
     return attitude;
   }
   YamlMap map(value, attitude_section());

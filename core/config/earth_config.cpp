@@ -1,19 +1,10 @@
 #include "core/config/earth_config.h"
 
-#include <array>
-
 #include "core/base/json.h"
 #include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
-
-struct NamedEllipsoid {
-  std::string_view name;
-  Ellipsoid ellipsoid;
-};
-constexpr std::array<NamedEllipsoid, 3> named{
-    {{"WGS84", wgs84}, {"WGS72", wgs72}, {"GRS80", grs80}}};
 
 const Section& ellipsoid_section() {
   static const Section section{
@@ -35,29 +26,19 @@ const Section& origin_section() {
   return section;
 }
 
-std::vector<std::string> ellipsoid_names() {
-  std::vector<std::string> names;
-  for (const auto& one : named) names.emplace_back(one.name);
-  return names;
-}
-
 Ellipsoid read_ellipsoid(const YamlValue& value) {
-  if (value.is_map()) {
-    YamlMap map(value, ellipsoid_section());
-    const Ellipsoid ellipsoid{map.number("a_m"), map.number("f")};
-    map.done();
-    return ellipsoid;
-  }
-  const std::string name = value.choice();
-  for (const auto& one : named)
-    if (one.name == name) return one.ellipsoid;
-  return {};
+  if (!value.is_map()) return value.chosen({wgs84, wgs72, grs80});
+  YamlMap map(value, ellipsoid_section());
+  const Ellipsoid ellipsoid{map.number("a_m"), map.number("f")};
+  map.done();
+  return ellipsoid;
 }
 
 }  // namespace
 
 std::vector<Key> earth_keys() {
-  return {optional("ellipsoid", form::choice(ellipsoid_names()) | form::map(ellipsoid_section),
+  return {optional("ellipsoid",
+                   form::choice({"WGS84", "WGS72", "GRS80"}) | form::map(ellipsoid_section),
                    "The figure of the Earth: of sites, heights, shadow and limb.", "WGS84"),
           optional("origin", form::map(origin_section),
                    "The place of east, north and up, for motions, cameras and positions."),

@@ -248,6 +248,16 @@ std::vector<ParameterValue> parameters_of(const FieldBlur& field) {
   return numbers;
 }
 
+std::vector<double> numbers_in(const InstrumentParameter& p, const SensorConfig& sensor) {
+  return numbers_of(p, sensor.instrument);
+}
+std::vector<double> numbers_in(const ImageParameter& p, const SensorConfig& sensor) {
+  return {sensor.camera.optics.image.*p.value};
+}
+std::vector<double> numbers_in(const DetectorParameter& p, const SensorConfig& sensor) {
+  return {p.number_of(sensor.camera.detector)};
+}
+
 }  // namespace
 
 std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const EffectFacts& effect) {
@@ -267,21 +277,13 @@ std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const Effe
   if (effect.name == Streak::facts.name && sensor.effects.snapshots() > 0)
     return {{"snapshots", {double(sensor.effects.snapshots())}}};
   std::vector<ParameterValue> numbers;
-  InstrumentEffects::for_each([&]<class Effect>() {
+  const auto add = [&]<class Effect>() {
     if (Effect::facts.name == effect.name)
-      for (const InstrumentParameter& p : Effect::parameters())
-        numbers.push_back({p.key, numbers_of(p, sensor.instrument)});
-  });
-  ImageEffects::for_each([&]<class Effect>() {
-    if (Effect::facts.name == effect.name)
-      for (const ImageParameter& p : Effect::parameters())
-        numbers.push_back({p.key, {camera.optics.image.*p.value}});
-  });
-  DetectorEffects::for_each([&]<class Effect>() {
-    if (Effect::facts.name == effect.name)
-      for (const DetectorParameter& p : Effect::parameters())
-        numbers.push_back({p.key, {p.number_of(camera.detector)}});
-  });
+      for (const auto& p : Effect::parameters()) numbers.push_back({p.key, numbers_in(p, sensor)});
+  };
+  InstrumentEffects::for_each(add);
+  ImageEffects::for_each(add);
+  DetectorEffects::for_each(add);
   return numbers;
 }
 

@@ -124,13 +124,8 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
 }
 
 Accuracy read_accuracy(const YamlValue& value) {
-  if (value.is_scalar()) {
-    const std::string name = value.choice({"draft", "standard", "reference", "off"});
-    return name == "draft"       ? draft_accuracy()
-           : name == "standard"  ? standard_accuracy()
-           : name == "reference" ? reference_accuracy()
-                                 : Accuracy{};
-  }
+  if (value.is_scalar())
+    return value.chosen({draft_accuracy(), standard_accuracy(), reference_accuracy(), Accuracy{}});
   YamlMap map(value, accuracy_section());
   if (const auto seconds = map.find("seconds_per_frame")) {
     const double limit_s = seconds->number();

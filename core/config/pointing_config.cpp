@@ -278,7 +278,7 @@ Forms pointing_forms() { return form::choice({"zenith"}) | form::map(pointing_se
 void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
                    const std::optional<Site>& origin) {
   if (value.is_scalar()) {
-    value.choice({"zenith"});
+    value.choice();
     sensor.pointing = PointUp{};
     return;
   }

@@ -46,9 +46,6 @@ class YamlValue {
   std::string choice() const;
   /// One of `choices`; an error names them.
   std::string choice(std::span<const std::string_view> choices) const;
-  std::string choice(std::initializer_list<std::string_view> choices) const {
-    return choice(std::span(choices.begin(), choices.size()));
-  }
   /// The meaning of the choice, of those of all choices of the value's section in their order.
   template <class Meaning>
   Meaning chosen(std::initializer_list<Meaning> meanings) const {

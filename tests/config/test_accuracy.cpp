@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/config/effect_list.h"
 #include "core/config/effects_config.h"
+#include "core/config/schema.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/image_optics.h"
 
@@ -13,8 +14,8 @@ namespace dmise {
 namespace {
 
 Accuracy read(const std::string& text) {
-  return read_accuracy(
-      YamlMap(YamlValue::parse("accuracy: " + text, "a.yaml")).require("accuracy"));
+  return read_accuracy(YamlMap(YamlValue::parse("accuracy: " + text, "a.yaml"), scenario_section())
+                           .require("accuracy"));
 }
 
 std::string complaint(const std::string& text) {
