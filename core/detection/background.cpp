@@ -18,8 +18,8 @@ struct Sky {
   float level = 0.0f, sigma = 0.0f;
 };
 
-/// Counts of a histogram from bin `from` to before `to`: whole numbers, so they can be brought to
-/// other bins without losing digits.
+/// Sums over a histogram from bin `from` to before `to`: whole numbers, so that moving the window
+/// loses no digits.
 class Window {
  public:
   explicit Window(const std::vector<std::uint32_t>& histogram) : histogram_(histogram) {}
@@ -104,7 +104,7 @@ std::array<std::uint16_t, 2> two_of(const std::vector<std::uint16_t>& values,
   return out;
 }
 
-/// Memory for a cell's values, and where those of the cell before were.
+/// Memory for a cell's values, and the median of the cell before.
 struct CellMemory {
   std::vector<std::uint16_t> values, some, row;
   std::vector<float> levels;

@@ -12,14 +12,15 @@ namespace dmise {
 /// at 3 sigma until convergence; the level is 2.5 median - 1.5 mean (Bertin & Arnouts 1996, A&AS
 /// 117, 393), or the median if the two differ by more than 0.3 sigma. A median over 3 x 3 cells
 /// removes bright sources; values are bilinear between the cells' centres and extrapolated to the
-/// frame's edges. Cells with a gradient are measured again without it: it is no noise. Where the
-/// level bends, as in the Moon's glow, so does the median's and what is between centres.
+/// frame's edges. Cells with a gradient are measured again without it, because it is no noise.
+/// Where the level bends, as in the Moon's glow, parabolas take the place of the median and of the
+/// straight lines between centres.
 class Background {
  public:
   Background(const CountImage& counts, int cell_px, Threads& threads);
 
-  /// Measures the same frame again, with the gradients that are known. `lit`: pixels that are left
-  /// out, unless they leave less than an eighth of a cell.
+  /// Measures the same frame again, with the gradients known from before and without the pixels
+  /// `lit`, unless these leave less than an eighth of a cell.
   void measure_without(const BitMask& lit, const CountImage& counts, Threads& threads);
 
   float level_dn(int x, int y) const { return level_.at(x, y); }
@@ -35,8 +36,8 @@ class Background {
   struct Area {
     int x0, y0, x1, y1;
   };
-  /// Cells over which the level bends so much that a straight line between cells misses it by more
-  /// than `share` of its noise.
+  /// Returns the cells over which the level bends so much that a straight line between cells misses
+  /// it by more than `share` of its noise.
   std::vector<Area> bent_cells(double share) const;
   /// Medians over the frame.
   float median_level_dn() const;

@@ -18,7 +18,7 @@ class BitMask {
   void set(int x, int y) {
     bits_[std::size_t(y) * words_ + std::size_t(x) / 64] |= std::uint64_t(1) << (unsigned(x) % 64);
   }
-  /// Sets those of 64 pixels from a column on that are set in `bits`, all in the frame.
+  /// Sets the pixels of a row, from a column on, whose bits are set; all are in the frame.
   void set_bits(int x, int y, std::uint64_t bits) {
     if (bits == 0) return;
     std::uint64_t* word = bits_.data() + std::size_t(y) * words_ + std::size_t(x) / 64;
@@ -26,7 +26,7 @@ class BitMask {
     word[0] |= bits << shift;
     if (shift != 0 && bits >> (64 - shift) != 0) word[1] |= bits >> (64 - shift);
   }
-  /// Up to 64 pixels of a row from a column on, all in the frame.
+  /// Returns up to 64 pixels of a row from a column on, all in the frame.
   std::uint64_t bits(int x, int y, int count) const {
     const std::uint64_t* word = bits_.data() + std::size_t(y) * words_ + std::size_t(x) / 64;
     const unsigned shift = unsigned(x) % 64;

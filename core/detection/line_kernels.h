@@ -25,7 +25,7 @@ struct SampleSum {
 };
 
 /// Lines beside each other, of the same rows: one begins at each pixel from `reach` before a line
-/// to `reach` after it. What pointers lead to has `width` elements, which are 0 before.
+/// to `reach` after it. Arrays have `width` elements, which are 0 at first.
 struct BandSums {
   static constexpr int bits = 5;    // of fractions
   static constexpr int block = 32;  // of which `width` is a multiple

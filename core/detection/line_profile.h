@@ -70,7 +70,7 @@ std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to
 
 double median_level(const std::vector<Slice>& s);
 
-/// Mean with values clipped at twice `level` (a star on the line), and its SNR.
+/// Returns the mean with values clipped at twice `level`, as of a star on the line, and its SNR.
 std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level);
 
 /// Returns the most significant gap within an extent in which a line of `level` has no light, if it
@@ -81,8 +81,9 @@ std::optional<Extent> dark_gap(const Scene& scene, const Line& line, const Exten
 /// A trail along the line over the extent.
 Trail trail_along(const Line& line, const Extent& extent, double level);
 
-/// Excess of a trail's light over parallel lines beside it, in units of their scatter: where faint
-/// stars are dense, that exceeds the pixel noise. Infinite if there are too few lines.
+/// Returns the excess of a trail's light over parallel lines beside it, in units of their scatter,
+/// which exceeds the pixels' noise where faint stars are dense. Infinite if there are too few
+/// lines.
 double rise_above_neighbours(const Scene& scene, const Trail& trail);
 
 }  // namespace dmise

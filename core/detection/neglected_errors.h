@@ -4,8 +4,8 @@
 
 namespace dmise {
 
-/// Error of a streak's end where it is a step lost in noise, by the square of the SNR of a pixel's
-/// worth of length (Yao 1987, Annals of Statistics 15, 1321).
+/// Returns the error of a streak's end that is a step lost in noise, by the square of the SNR of
+/// one pixel's length (Yao 1987, Annals of Statistics 15, 1321).
 double end_error_px(double snr2_per_px);
 
 /// Adds to a covariance the errors that the curvature of chi2 at the fit does not show.

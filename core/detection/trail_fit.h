@@ -46,7 +46,7 @@ struct TrailFit {
   std::vector<double> covariance;  // parameters x parameters
 
   double cov(int i, int j) const { return covariance[std::size_t(i * parameters + j)]; }
-  /// Adds to a covariance.
+  /// Adds to the covariance of two parameters.
   void add_cov(int i, int j, double value) {
     covariance[std::size_t(i * parameters + j)] += value;
     if (i != j) covariance[std::size_t(j * parameters + i)] += value;

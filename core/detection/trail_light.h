@@ -46,8 +46,8 @@ using TrailDerivatives = std::array<double, trail_parameters>;
 /// A trail prepared for evaluation. The pixel's integral is approximated by Gaussians wider by
 /// 1/12 px^2, and for those narrower than `square_below_px` by the next term of its series, too: a
 /// pixel is a square, whose fourth cumulants are -1/120 px^4. At the peak 0.7 % is left at
-/// that width and 0.3 % for a FWHM of 1.2 px. Derivatives lack that term, and that by the angle how
-/// an ellipse turns against the line.
+/// that width and 0.3 % for a FWHM of 1.2 px. Derivatives are without that term, and the one by the
+/// angle without the turn of an elliptical PSF against the line.
 class TrailLight {
  public:
   TrailLight(const Trail& trail, const Psf& psf);
