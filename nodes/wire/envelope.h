@@ -40,8 +40,6 @@ struct Envelope {
   Tick tick = 0;
   SimTime time;
   bool last_of_tick = false;  // the topic is complete for this tick and all before
-
-  bool operator==(const Envelope&) const = default;
 };
 
 /// One message as its frames. `arrays` is sent as a fourth frame unless it is empty.
@@ -54,7 +52,6 @@ struct Frames {
   std::size_t bytes() const {
     return topic.size() + envelope.size() + payload.size() + arrays.size();
   }
-  bool operator==(const Frames&) const = default;
 };
 
 /// Assembles topic, envelope and content and seals them with their CRC-32C.

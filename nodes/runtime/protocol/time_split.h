@@ -12,8 +12,6 @@ struct TimeSplit {
   std::uint64_t detections = 0;  // in all published frames
   double start_s = 0.0;          // from the start of the process until it was ready
   std::uint64_t peak_resident_bytes = 0, private_bytes = 0;
-
-  bool operator==(const TimeSplit&) const = default;
 };
 
 }  // namespace dmise
