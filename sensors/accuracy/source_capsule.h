@@ -28,10 +28,13 @@ bool for_capsule(const ReferenceSource& s, int columns, int rows, Visit&& visit)
     y1 = std::max(y1, p.y_px);
   }
   x0 -= s.margin_px, x1 += s.margin_px, y0 -= s.margin_px, y1 += s.margin_px;
-  const int last_x = int(std::ceil(std::min(x1, columns - 1.0)));
-  const int last_y = int(std::ceil(std::min(y1, rows - 1.0)));
-  for (int y = int(std::max(0.0, y0)); y <= last_y; ++y)
-    for (int x = int(std::max(0.0, x0)); x <= last_x; ++x)
+  // Trails may end far beside the frame.
+  const int first_x = int(std::clamp(x0, 0.0, double(columns)));
+  const int first_y = int(std::clamp(y0, 0.0, double(rows)));
+  const int last_x = int(std::ceil(std::clamp(x1, -1.0, columns - 1.0)));
+  const int last_y = int(std::ceil(std::clamp(y1, -1.0, rows - 1.0)));
+  for (int y = first_y; y <= last_y; ++y)
+    for (int x = first_x; x <= last_x; ++x)
       if (distance_px({double(x), double(y)}, s) <= s.margin_px)
         visit(std::size_t(y) * std::size_t(columns) + std::size_t(x), x, y);
   return x0 >= 0.0 && y0 >= 0.0 && x1 <= columns - 1.0 && y1 <= rows - 1.0;
