@@ -273,7 +273,8 @@ void add_dataset_command(CLI::App& app) {
   command->add_option("scenario", options->scenario, "scenario (YAML) with distributions")
       ->required();
   command->add_option("--seeds", options->seeds, "A..B, one sample each")->required();
-  command->add_option("--out", options->out, "directory")->default_val("out/dataset");
+  command->add_option("--out", options->out, "directory of the data set")
+      ->default_val("out/dataset");
   command
       ->add_option("--shard", options->shard,
                    "i/n: only the i-th of every n archives, for the tasks of a job array")

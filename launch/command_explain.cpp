@@ -103,10 +103,10 @@ void add_explain_command(CLI::App& app) {
       "Shows at which level each effect runs in a sensor's frames, why, and what it costs");
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_option("--sensor", options->sensor, "only this sensor");
-  command->add_option("--frames", options->frames, "plan at most so many frames of each sensor")
+  command->add_option("--frames", options->frames, "plan at most this many frames of each sensor")
       ->default_val(16)
       ->check(CLI::Range(1, 100000));
-  command->add_flag("--all", options->all, "also effects that have no choice");
+  command->add_flag("--all", options->all, "also effects without a choice of levels");
   command->add_flag("--json", options->json, "print one JSON object");
   command->callback([options] { explain(*options); });
 }

@@ -75,8 +75,8 @@ void add_keygen_command(CLI::App& app) {
   auto* command =
       app.add_subcommand("keygen",
                          "Creates keys: NAME.key, which only its owner may read, and NAME.pub, "
-                         "which grants access. Remove "
-                         "NAME.pub from the directory of a process to revoke the key");
+                         "which grants access. Remove NAME.pub from the directory of a process to "
+                         "revoke the key");
   command->add_option("directory", options->directory, "directory of keys")->required();
   command->add_option("names", options->names, "names of nodes of a run, observers, operator");
   command->add_option("--scenario", options->scenario, "also for every process of this scenario");
@@ -86,8 +86,7 @@ void add_keygen_command(CLI::App& app) {
                     "agent and its sensors: for containers");
   command
       ->add_option("--nodes", options->nodes,
-                   "the names are agents (dmise-host-agent) that may speak for NODE[,NODE..] "
-                   "only")
+                   "the names are agents (dmise-host-agent) that may speak for NODE[,NODE..] only")
       ->delimiter(',')
       ->allow_extra_args(false);
   command

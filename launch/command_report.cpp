@@ -17,12 +17,14 @@ struct ReportOptions {
 
 void add_report_command(CLI::App& app) {
   auto options = std::make_shared<ReportOptions>();
-  auto* command = app.add_subcommand("report",
-                                     "Writes the page of a run, RUN/index.html, from its products "
-                                     "alone: of one that has ended, was "
-                                     "interrupted or still goes on");
+  auto* command =
+      app.add_subcommand("report",
+                         "Writes the page of a run, RUN/index.html, from its products "
+                         "alone. The run may have ended, been interrupted or still go on");
   command->add_option("run", options->run, "directory of a run")->required();
-  command->add_option("--threads", options->threads, "number of threads; 0: of the processors")
+  command
+      ->add_option("--threads", options->threads,
+                   "number of threads; 0: one for each processor, at most 8")
       ->default_val(0)
       ->check(CLI::Range(0, 256));
   command->callback([options] {

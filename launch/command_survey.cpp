@@ -14,7 +14,9 @@ void add_survey_command(CLI::App& app) {
       "Tells what a network detects in whole nights, without rendering: coverage, detection and "
       "revisit of each shell of orbits; chooses sites. Goes on where it was stopped");
   command->add_option("scenario", o->scenario, "scenario (YAML)")->required();
-  command->add_option("--out", o->out, "directory of survey.json, the map and a directory a sensor")
+  command
+      ->add_option("--out", o->out,
+                   "directory of survey.json, the map and a directory for each sensor")
       ->capture_default_str();
   add_number_option(*command, "--night", o->night_deg, -90.0, 90.0,
                     "sensors on the ground expose while the Sun is below this elevation [deg]");
@@ -38,7 +40,7 @@ void add_survey_command(CLI::App& app) {
       ->check(CLI::Range(std::size_t(1), std::size_t(100000)));
   command->add_flag("--json", o->json, "print survey.json instead of tables");
   add_threads_option(*command, o->threads, "number of threads; the products do not depend on it");
-  command->footer("docs/models/survey.md tells how, and how well");
+  command->footer("docs/models/survey.md describes the method and its accuracy");
   command->callback([o] { run_survey(*o); });
 }
 

@@ -92,14 +92,16 @@ void add_tradeoff_command(CLI::App& app) {
       "and save in time against the reference of one frame; CSV, JSON, charts and a page. Goes on "
       "where it was stopped");
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--sensor", options->sensor, "its name; the first of the scenario");
+  command->add_option("--sensor", options->sensor,
+                      "name of the sensor; default: the first of the scenario");
   command->add_option("--frame", options->frame, "number of the exposure")
       ->default_val(1)
       ->check(CLI::Range(1u, 1000000u));
   command->add_option("--repeats", options->repeats, "frames of each kind that are timed, in turns")
       ->default_val(3)
       ->check(CLI::Range(1, 1000));
-  command->add_option("--out", options->out, "directory")->default_val("out/tradeoff");
+  command->add_option("--out", options->out, "directory of the products")
+      ->default_val("out/tradeoff");
   command->callback([options] { tradeoff(*options); });
 }
 

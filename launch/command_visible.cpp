@@ -215,7 +215,7 @@ void add_visible_command(CLI::App& app) {
   auto* sunlit = command->add_flag("--sunlit", o->sunlit, "only passes that are partly sunlit");
   command
       ->add_flag("--dark", o->dark,
-                 "only passes that are partly in the Earth's shadow; plots that part")
+                 "only passes that are partly in the Earth's shadow; the figure shows that part")
       ->excludes(sunlit);
   command
       ->add_option(
