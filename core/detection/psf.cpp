@@ -5,18 +5,13 @@
 #include "core/base/units.h"
 
 namespace dmise {
-namespace {
-
-const double fwhm_of_sigma = std::sqrt(8 * std::log(2.0));
-
-}  // namespace
 
 double with_pixel(double sigma_px) { return std::sqrt(sigma_px * sigma_px + pixel_variance_px2); }
 
-double sigma_with_pixel(double fwhm_px) { return with_pixel(fwhm_px / fwhm_of_sigma); }
+double sigma_with_pixel(double fwhm_px) { return with_pixel(fwhm_px / fwhm_per_sigma); }
 
 double fwhm_before_pixel(double sigma_px) {
-  return fwhm_of_sigma * std::sqrt(std::max(sigma_px * sigma_px - pixel_variance_px2, 0.0));
+  return fwhm_per_sigma * std::sqrt(std::max(sigma_px * sigma_px - pixel_variance_px2, 0.0));
 }
 
 double Psf::equivalent_sigma_px() const {
@@ -35,7 +30,7 @@ double Psf::equivalent_sigma_px() const {
 
 PsfField PsfField::gaussian(double fwhm_px) {
   PsfField field;
-  field.width_px = fwhm_px / fwhm_of_sigma;
+  field.width_px = fwhm_px / fwhm_per_sigma;
   return field;
 }
 

@@ -15,7 +15,6 @@
 namespace dmise {
 namespace {
 
-constexpr double fwhm_of_sigma = 2.3548200450309493;
 constexpr double least_fwhm_px = 0.5, most_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
 
@@ -66,7 +65,7 @@ void set_width(const StandardCards& cards, const std::optional<StarShape>& shape
     header.psf_fwhm_px = *stated;
   } else if (shape) {
     const double sigma_px = std::sqrt(std::max(shape->sigma_px * shape->sigma_px - 1.0 / 12, 0.0));
-    header.psf_fwhm_px = std::clamp(fwhm_of_sigma * sigma_px, least_fwhm_px, most_fwhm_px);
+    header.psf_fwhm_px = std::clamp(fwhm_per_sigma * sigma_px, least_fwhm_px, most_fwhm_px);
     cards.assumed(formatted("PSF: %.3g px wide (FWHM), measured in %d stars", header.psf_fwhm_px,
                             shape->stars));
   } else {

@@ -2,11 +2,11 @@
 #include <array>
 #include <vector>
 
+#include "core/base/units.h"
 #include "core/optics/camera.h"
 
 namespace dmise {
 
-inline constexpr double fwhm_per_sigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
 /// Narrower Gaussians are deposited with this width; it moves light by less than 0.1 px.
 inline constexpr double narrowest_sigma_px = 0.02;
 
