@@ -70,14 +70,11 @@ DatasetDirectory::DatasetDirectory(std::string path, DatasetPlan plan)
 
 DatasetDirectory::Content DatasetDirectory::content() const {
   const std::string mark = "\"digest\":\"" + plan_.digest + "\"";
-  if (path_exists(path_ + "/dataset.json"))
-    return read_text_file(path_ + "/dataset.json").find(mark) != std::string::npos
-               ? Content::same_complete
-               : Content::another;
-  if (!path_exists(part("plan.json"))) return Content::nothing;
-  return read_text_file(part("plan.json")).find(mark) != std::string::npos
-             ? Content::same_unfinished
-             : Content::another;
+  for (const auto& [path, same] : {std::pair{path_ + "/dataset.json", Content::same_complete},
+                                   std::pair{part("plan.json"), Content::same_unfinished}})
+    if (path_exists(path))
+      return read_text_file(path).find(mark) != std::string::npos ? same : Content::another;
+  return Content::nothing;
 }
 
 void DatasetDirectory::clear() const {

@@ -9,30 +9,20 @@
 namespace dmise {
 
 RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bool force) {
-  RunStart start;
-  switch (directory.content()) {
-    case RunDirectory::Content::same_run_complete:
-      if (!force) {
-        std::printf("%s contains this run, complete; --force repeats it\n",
-                    directory.path().c_str());
-        if (!has_index_page(directory)) write_index_page(directory);
-        std::fputs(what_to_open(directory, scenario).c_str(), stdout);
-        return {.needed = false};
-      }
-      break;
-    case RunDirectory::Content::another_run:
-      if (!force)
-        throw ConfigError(
-            directory.path() +
-            ": contains the products of another run; --force replaces them, --out writes "
-            "elsewhere");
-      break;
-    case RunDirectory::Content::same_run_unfinished:
-      if (!force) start.first_tick = resume_tick(scenario, directory);
-      break;
-    case RunDirectory::Content::empty:
-      break;
+  using Content = RunDirectory::Content;
+  const Content content = force ? Content::empty : directory.content();
+  if (content == Content::same_run_complete) {
+    std::printf("%s contains this run, complete; --force repeats it\n", directory.path().c_str());
+    if (!has_index_page(directory)) write_index_page(directory);
+    std::fputs(what_to_open(directory, scenario).c_str(), stdout);
+    return {.needed = false};
   }
+  if (content == Content::another_run)
+    throw ConfigError(
+        directory.path() +
+        ": contains the products of another run; --force replaces them, --out writes elsewhere");
+  RunStart start;
+  if (content == Content::same_run_unfinished) start.first_tick = resume_tick(scenario, directory);
   if (start.first_tick > 0) {
     std::printf(
         "%s contains this run, interrupted: continuing at tick %ld of %ld; --force restarts\n",

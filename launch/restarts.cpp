@@ -9,16 +9,14 @@ std::vector<std::string> Restarts::check(const RunStatus& status, Instant now) {
   if (network_.on_silent_node != OnSilentNode::restart || status.phase == Phase::failed ||
       status.phase == Phase::ended)
     return lines;
-  std::vector<std::string> names;
-  for (const Child& child : processes_.children()) names.push_back(child.name);
-  for (const std::string& name : names) {
-    const Child& child = *processes_.find(name);
+  for (const Child& child : processes_.children()) {
     const std::string why = reason(child, status, now);
     if (why.empty() || child.starts > network_.restarts) continue;
-    processes_.restart(name);
-    last_[name] = now;
-    lines.push_back(name + " " + why + " and was restarted (" + std::to_string(child.starts - 1) +
-                    " of " + std::to_string(network_.restarts) + ")");
+    processes_.restart(child.name);
+    last_[child.name] = now;
+    lines.push_back(child.name + " " + why + " and was restarted (" +
+                    std::to_string(child.starts - 1) + " of " + std::to_string(network_.restarts) +
+                    ")");
   }
   return lines;
 }
