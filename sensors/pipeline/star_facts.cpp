@@ -52,7 +52,7 @@ StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double fa
   if (!stars) return;
   const StarTable& table = stars->stars;
   if (sensor.effects.has(StarBackground::facts))
-    drawn_ = std::min(faintest_v_mag, stars->summary.faintest_filled_v_mag);
+    drawn_.to_v_mag = std::min(faintest_v_mag, stars->summary.faintest_filled_v_mag);
   if (drawn_.to_v_mag > -unbounded && scene_facts(sensor).synthetic_stars &&
       sensor.effects.has(SyntheticBackground::facts)) {
     // The catalogue outlives this.
