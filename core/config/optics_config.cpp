@@ -7,7 +7,6 @@
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/config/field_tables_config.h"
-#include "core/config/sky_config.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -302,17 +301,6 @@ Optics read_optics(const YamlValue& value) {
         "equivalent_aperture: true takes the aperture as a collecting area",
         false);
   return optics;
-}
-
-SensorSeeing read_seeing(const YamlValue& value) {
-  YamlMap map(value, seeing_section());
-  SensorSeeing s;
-  s.r0_m = map.number("r0_m");
-  if (const auto v = map.find("outer_scale_m")) s.outer_scale_m = v->number();
-  s.wind_m_per_s = map.number_or("wind_m_per_s", 10.0);
-  s.wind_direction_deg = map.number_or("wind_direction_deg", 0.0);
-  map.done();
-  return s;
 }
 
 void write_optics_json(JsonWriter& json, const Optics& optics) {

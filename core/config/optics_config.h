@@ -9,9 +9,6 @@ namespace dmise {
 /// Reads `optics:` of a camera; the keys are those of docs/models/optics.md.
 Optics read_optics(const YamlValue& value);
 
-/// Reads `seeing:` of a sensor.
-SensorSeeing read_seeing(const YamlValue& value);
-
 /// Writes the optics that determine a frame, besides the camera's geometry; defaults are omitted.
 void write_optics_json(JsonWriter& json, const Optics& optics);
 void write_seeing_json(JsonWriter& json, const SensorSeeing& seeing);

@@ -228,10 +228,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   if (const auto seeing = map.find("seeing")) {
     if (sensor.camera.optics.spread.model == PointSpread::Model::gaussian)
       seeing->fail("needs a camera with psf: diffraction", false);
-    sensor.seeing = names_profile(*seeing)
-                        ? read_seeing_profile(*seeing, airmass_of(sensor.pointing),
-                                              sensor.atmosphere.turbulence)
-                        : read_seeing(*seeing);
+    sensor.seeing = read_seeing(*seeing, airmass_of(sensor.pointing));
   }
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)

@@ -379,23 +379,22 @@ const Section& seeing_section() {
   return section;
 }
 
-bool names_profile(const YamlValue& seeing) {
-  return seeing.is_map() && YamlMap(seeing).find("profile").has_value();
-}
-
-SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
-                                 std::optional<TurbulenceConfig>& turbulence_over) {
+SensorSeeing read_seeing(const YamlValue& value, double airmass) {
   constexpr double wavelength_m = 500 * nm;  // of `SensorSeeing::r0_m`
   YamlMap map(value, seeing_section());
-  turbulence_over = read_turbulence_keys(map);
   SensorSeeing seeing;
+  if (map.find("profile")) {
+    const TurbulenceConfig over = read_turbulence_keys(map);
+    const Turbulence t = turbulence(over.profile, wavelength_m, airmass, over.wind);
+    seeing.r0_m = t.r0_m;
+    seeing.wind_m_per_s = t.wind_m_per_s;
+  } else {
+    seeing.r0_m = map.number("r0_m");
+    seeing.wind_m_per_s = map.number_or("wind_m_per_s", 10.0);
+  }
   if (const auto v = map.find("outer_scale_m")) seeing.outer_scale_m = v->number();
   seeing.wind_direction_deg = map.number_or("wind_direction_deg", 0.0);
   map.done();
-  const Turbulence t =
-      turbulence(turbulence_over->profile, wavelength_m, airmass, turbulence_over->wind);
-  seeing.r0_m = t.r0_m;
-  seeing.wind_m_per_s = t.wind_m_per_s;
   return seeing;
 }
 

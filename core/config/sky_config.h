@@ -58,12 +58,9 @@ AtmosphereConfig standard_atmosphere(double k_v_mag_per_airmass);
 /// `known` unchanged.
 void read_surroundings(YamlMap& map, Surroundings& known);
 
-/// Returns whether `seeing:` of a sensor names a turbulence profile.
-bool names_profile(const YamlValue& seeing);
-/// Reads `seeing: {profile: hv57 | FILE.csv, ...}`: r0 and wind of the profile's turbulence at this
-/// airmass; the profile itself is stored in `turbulence_over`.
-SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
-                                 std::optional<TurbulenceConfig>& turbulence_over);
+/// Reads `seeing:` of a sensor: r0 and wind, or `{profile: hv57 | FILE.csv, ...}`, whose r0 and
+/// wind are those of its turbulence at this airmass.
+SensorSeeing read_seeing(const YamlValue& value, double airmass);
 
 /// Throws `ConfigError` at `where` if a component of the sky has no spectrum in the band.
 void check_sky_in_band(const YamlValue& where, const SkyConfig& sky, const Band& band, bool in_air);

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/config/optics_config.h"
+#include "core/config/sky_config.h"
 
 namespace dmise {
 namespace {
@@ -114,10 +115,10 @@ TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
 
 TEST(OpticsConfig, ReadsSeeing) {
   const SensorSeeing s = read_seeing(
-      YamlValue::parse("{r0_m: 0.08, outer_scale_m: 25, wind_m_per_s: 12}", "scenario.yaml"));
+      YamlValue::parse("{r0_m: 0.08, outer_scale_m: 25, wind_m_per_s: 12}", "scenario.yaml"), 1.0);
   EXPECT_EQ(s.r0_m, 0.08);
   EXPECT_EQ(s.outer_scale_m, 25.0);
-  EXPECT_THROW(read_seeing(YamlValue::parse("{r0_m: 0}", "s.yaml")), ConfigError);
+  EXPECT_THROW(read_seeing(YamlValue::parse("{r0_m: 0}", "s.yaml"), 1.0), ConfigError);
 }
 
 }  // namespace
