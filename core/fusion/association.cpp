@@ -7,6 +7,7 @@
 #include "core/fusion/assignment.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"
+#include "core/tracking/line_of_light.h"
 
 namespace dmise {
 namespace {
@@ -23,12 +24,6 @@ bool behind_earth(const Vec<Gcrs>& sensor_m, const Vec<Gcrs>& direction, double 
   const double along = -dot(sensor_m, direction);
   if (along <= 0 || along >= range_m) return false;
   return norm(sensor_m + direction * along) < earth_m;
-}
-
-/// Where light left that arrives `dt_s` after a state.
-Vec<Gcrs> moved(const Vec<Gcrs>& r, const Vec<Gcrs>& v, double dt_s) {
-  const double r2 = dot(r, r);
-  return r + v * dt_s - r * (earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * dt_s * dt_s / 2);
 }
 
 }  // namespace
@@ -53,8 +48,8 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
   };
   const auto add = [&](Candidate candidate, const Vec<Gcrs>& r, const Vec<Gcrs>& v,
                        double sigma_m) {
-    Vec<Gcrs> line = moved(r, v, dt_s) - frame.sensor_m;
-    line = moved(r, v, dt_s - norm(line) / speed_of_light_m_per_s) - frame.sensor_m;
+    Vec<Gcrs> line = position_after_m(r, v, dt_s) - frame.sensor_m;
+    line = position_after_m(r, v, dt_s - norm(line) / speed_of_light_m_per_s) - frame.sensor_m;
     candidate.range_m = norm(line);
     if (candidate.range_m < 1.0) return;
     candidate.direction = line / candidate.range_m;

@@ -7,6 +7,7 @@
 
 #include "core/base/units.h"
 #include "core/fusion/sensor_frame.h"
+#include "core/tracking/line_of_light.h"
 #include "core/tracking/predict.h"
 #include "core/tracking/propagate.h"
 
@@ -56,10 +57,7 @@ bool may_look(const CueSky& sky, const CueSettings& cue, const Place& place,
 
 /// Derivatives of the angles east and north of a line with respect to the position.
 Eigen::Matrix<double, 2, 3> angle_rows(const Vec<Gcrs>& line) {
-  const SkyTangents tangents = sky_tangents(unit(line));
-  Eigen::Matrix<double, 2, 3> rows;
-  rows << eigen_of(tangents.east).transpose(), eigen_of(tangents.north).transpose();
-  return rows / norm(line);
+  return rows_of(sky_tangents(unit(line))) / norm(line);
 }
 
 double chance(double magnitude_1000_km, double range_m, double limit, double best) {
@@ -86,10 +84,8 @@ double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& 
                   const MountPosition& from, SimTime start) {
   const SimTime t = start + sim_seconds(sensor.cue.settle_s);
   const OrbitState& known = target.estimate.state;
-  const double dt_s = (t - known.time).seconds(), r2 = dot(known.position_m, known.position_m);
-  const Vec<Gcrs> r =
-      known.position_m + known.velocity_m_per_s * dt_s -
-      known.position_m * (earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * dt_s * dt_s / 2);
+  const double dt_s = (t - known.time).seconds();
+  const Vec<Gcrs> r = position_after_m(known.position_m, known.velocity_m_per_s, dt_s);
   const Place place = place_of(sky, sensor, t);
   const Vec<Gcrs> line = r - place.sensor_m;
   const Vec<Enu> direction = place.enu_from_gcrs * unit(line);

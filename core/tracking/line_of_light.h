@@ -36,18 +36,30 @@ inline LineOfLight line_of_light(const Eigen::Vector3d& position_m,
   return out;
 }
 
+/// Position `dt_s` after a state, by its velocity and the attraction of the Earth's centre: for
+/// some seconds.
+inline Vec<Gcrs> position_after_m(const Vec<Gcrs>& r, const Vec<Gcrs>& v, double dt_s) {
+  const double r2 = dot(r, r);
+  return r + v * dt_s - r * (earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * dt_s * dt_s / 2);
+}
+
+/// East and north as the rows of a matrix.
+inline Eigen::Matrix<double, 2, 3> rows_of(const SkyTangents& tangents) {
+  Eigen::Matrix<double, 2, 3> rows;
+  rows << eigen_of(tangents.east).transpose(), eigen_of(tangents.north).transpose();
+  return rows;
+}
+
 /// Derivatives of the direction's angles, along `east` and `north` at it, with respect to position
 /// and velocity at the time of reception.
 inline Eigen::Matrix<double, 2, 6> angle_derivatives(const LineOfLight& line,
                                                      const SkyTangents& tangents) {
-  Eigen::Matrix<double, 2, 3> sky;
-  sky << eigen_of(tangents.east).transpose(), eigen_of(tangents.north).transpose();
   const Eigen::Vector3d towards = line.line_m / line.range_m;
   // A longer line is older: d line = d r - t d v - v (towards . d line) / c.
   const Eigen::Matrix3d delay = Eigen::Matrix3d::Identity() -
                                 line.velocity_m_per_s * towards.transpose() /
                                     (speed_of_light_m_per_s + towards.dot(line.velocity_m_per_s));
-  const Eigen::Matrix<double, 2, 3> place = sky * delay / line.range_m;
+  const Eigen::Matrix<double, 2, 3> place = rows_of(tangents) * delay / line.range_m;
   Eigen::Matrix<double, 2, 6> out;
   out << place, -line.light_time_s * place;
   return out;

@@ -8,6 +8,7 @@
 #include "core/base/chi_square.h"
 #include "core/base/units.h"
 #include "core/orbit/two_body.h"
+#include "core/tracking/line_of_light.h"
 #include "core/tracking/orbit_state.h"
 
 namespace dmise {
@@ -72,10 +73,8 @@ Normal normal_of(std::span<const AngleObservation> lines, SimTime middle, double
     }
     const double range_m = line.norm();
     const Vec<Gcrs> direction = gcrs_of(line / range_m);
-    const SkyTangents tangents = sky_tangents(direction);
     const Eigen::Vector2d residual = angles_between(direction, seen.direction);
-    Eigen::Matrix<double, 2, 3> sky;
-    sky << eigen_of(tangents.east).transpose(), eigen_of(tangents.north).transpose();
+    const Eigen::Matrix<double, 2, 3> sky = rows_of(sky_tangents(direction));
     Eigen::Matrix<double, 2, 6> h;
     h << sky / range_m, dt_s * sky / range_m;
     const Eigen::Matrix2d weight = covariance_of(seen).inverse();
