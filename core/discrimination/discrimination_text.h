@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-/// What a run says of one object: ratios of every band to the first.
+/// Result of a run for one object: ratios of the light in each band to that in the first.
 struct ObjectSignature {
   std::string object;
   std::size_t samples = 0;
@@ -21,9 +21,8 @@ struct ObjectSignature {
   std::vector<MaterialFit> fits;     // of `summed`, most probable first
 };
 
-/// Signatures of all objects; what a material is found to be in each sample goes into `confusion`
-/// where `known` (object to material) says what it is. Samples without light in the first band have
-/// no ratio.
+/// Signatures of all objects. `confusion` counts which material each sample of an object of known
+/// material is taken for. Samples without light in the first band have no ratio.
 struct RunDiscrimination {
   RunSpectra spectra;
   std::vector<MaterialSignature> materials;
@@ -31,7 +30,7 @@ struct RunDiscrimination {
   ConfusionMatrix confusion;
 };
 
-/// Throws `Error` for a known material that is not among `materials`.
+/// `known`: object to material. Throws `Error` for a known material that is not among `materials`.
 RunDiscrimination discriminate(RunSpectra spectra, const std::vector<MaterialSignature>& materials,
                                const std::map<std::string, std::string>& known);
 

@@ -8,7 +8,7 @@ namespace dmise {
 
 /// Sunlight reflected by the Earth onto an object: the Earth as a diffuse sphere of 6371 km,
 /// divided into `rings` rings around the nadir as seen from the object, each of 4 x `rings`
-/// patches. One albedo stands for clouds, seas and air.
+/// patches. Clouds, seas and air have one albedo.
 struct Earthshine {
   static constexpr EffectFacts facts{
       "earthshine", "sunlight that the Earth throws on objects (off unless asked for)",

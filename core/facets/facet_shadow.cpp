@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-/// Facets this close to edge-on cast no shadow.
+/// Facets with a smaller cosine cast no shadow.
 constexpr double least_cosine = 1e-9;
 
 }  // namespace

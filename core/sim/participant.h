@@ -31,8 +31,8 @@ class Participant {
 
   /// The ticks at which it works; `step` is called for no other tick.
   virtual Schedule schedule() const { return {}; }
-  /// The ticks, of `schedule`, at which it may publish on one of its topics. Nobody waits for it at
-  /// others. What holds between two must be in the look-back of whoever consumes it.
+  /// The ticks, of `schedule`, at which it may publish on one of its topics; consumers wait for it
+  /// at no others. The look-back of each consumer must reach the last of them.
   virtual Schedule schedule_of(const std::string& /*topic*/) const { return schedule(); }
 
   /// Performs the work of one tick. `inputs`: all messages of the consumed topics since the last
@@ -40,8 +40,7 @@ class Participant {
   /// messages to publish.
   virtual std::vector<Message> step(Tick tick, std::span<const Message> inputs) = 0;
 
-  /// Number of ticks before the one at which it resumes whose inputs it needs to continue
-  /// seamlessly.
+  /// Number of ticks before the one at which it resumes whose inputs it needs.
   virtual Tick look_back() const { return 0; }
 
   /// Continues the work of an earlier process: the next `step` is that of `tick` or the first of

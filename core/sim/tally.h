@@ -32,8 +32,8 @@ struct TickTally {
   std::uint64_t digest = 0;        // of a host: the sum of its nodes' content_digest
 };
 
-/// Contribution of a node's tick to the digest of a run, which is the sum over all nodes and ticks
-/// and hence independent of their order. 0 for a node without topics.
+/// Returns the contribution of a node's tick to the digest of a run, which is the sum over all
+/// nodes and ticks and so does not depend on their order. 0 for a node without topics.
 inline std::uint64_t content_digest(std::string_view node, const TickTally& tally) {
   if (tally.topics.empty()) return 0;
   std::uint64_t digest = fold_digest(0, std::uint64_t(tally.tick));

@@ -27,10 +27,9 @@ struct NodeTopics {
 /// dependency cycle within a tick, in which a topic with a delay does not count. Empty if they can.
 std::optional<std::string> topic_fault(const std::vector<NodeTopics>& nodes);
 
-/// For nodes that can run together, by name: how many ticks before tick k a node must have
-/// published so that all its dependants can resume at k. A consumer needs its look-back, and what
-/// it must have published for its own consumers: the longest sum along the graph. Of a topic with a
-/// delay that is the delay.
+/// Returns, by name, for nodes that can run together, how many ticks before tick k a node must have
+/// published so that all its dependants can resume at k: the longest sum along the graph of the
+/// look-backs of its consumers. For a topic with a delay it is the delay.
 std::map<std::string, Tick> history_ticks(const std::vector<NodeTopics>& nodes);
 
 }  // namespace dmise
