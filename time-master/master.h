@@ -1,8 +1,6 @@
 #pragma once
 #include <functional>
-#include <map>
 #include <string>
-#include <vector>
 
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/security/security.h"

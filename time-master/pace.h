@@ -1,5 +1,4 @@
 #pragma once
-#include <chrono>
 #include <optional>
 
 #include "core/base/instant.h"

@@ -11,7 +11,6 @@
 #include "nodes/gateway/web_server.h"
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/process/json_log.h"
-#include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/program.h"
 #include "nodes/runtime/security/security.h"
 

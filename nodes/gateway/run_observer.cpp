@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <map>
-#include <memory>
 
 #include "core/base/error.h"
 #include "nodes/gateway/live_view.h"

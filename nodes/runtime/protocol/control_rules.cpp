@@ -1,7 +1,6 @@
 #include "nodes/runtime/protocol/control_rules.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
