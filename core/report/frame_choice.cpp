@@ -11,7 +11,7 @@ DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings
   const std::size_t sources = std::max(run.truths.size(), run.detections.size()) / c.every;
   c.source_every =
       std::max<std::size_t>(1, (sources + settings.most_sources - 1) / settings.most_sources);
-  c.row_of.assign(total, DrawnFrames::none);
+  c.row_of.assign(total, 0);
   c.with_sources.assign(total, false);
   std::vector<std::size_t> seen(run.sensors.size()), kept(run.sensors.size());
   std::vector<std::vector<std::size_t>> able(run.sensors.size());  // rows with a file

@@ -17,12 +17,11 @@ struct ReportSettings {
 /// Which frames the page draws, and which of them can be opened with their pixels.
 struct DrawnFrames {
   std::size_t every = 1;            // one of so many of a sensor's frames is drawn
-  std::vector<std::size_t> row_of;  // of each frame of the run; none: not in the page
+  std::vector<std::size_t> row_of;  // of each frame of the run that is in the page
   std::vector<std::size_t> frames;  // of each row
   std::vector<std::size_t> viewed;  // rows
   std::vector<bool> with_sources;   // of each frame: its truth and detections are in the page
   std::size_t source_every = 1;     // one of so many of them has its sources in the page
-  static constexpr std::size_t none = std::size_t(-1);
 };
 
 DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings);
