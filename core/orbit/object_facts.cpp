@@ -12,39 +12,31 @@ namespace dmise {
 
 namespace {
 
-struct Columns {
-  std::optional<std::size_t> number, magnitude, rcs, length, width, height, albedo;
-};
+/// Place of each column by its name in upper case.
+using Columns = std::map<std::string, std::size_t>;
 
 Columns columns_of(std::string_view header) {
-  Columns c;
+  Columns columns;
   const std::vector<std::string> names = csv_fields(header);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string name = upper_case(trimmed(names[i]));
-    if (name == "CATALOGUE_NUMBER" || name == "NORAD_CAT_ID") c.number = i;
-    if (name == "STANDARD_MAGNITUDE") c.magnitude = i;
-    if (name == "RCS_M2") c.rcs = i;
-    if (name == "LENGTH_M") c.length = i;
-    if (name == "WIDTH_M") c.width = i;
-    if (name == "HEIGHT_M") c.height = i;
-    if (name == "ALBEDO") c.albedo = i;
+    columns[name == "NORAD_CAT_ID" ? "CATALOGUE_NUMBER" : name] = i;
   }
-  return c;
+  return columns;
 }
 
-ObjectFacts facts_of(const std::vector<std::string>& row, const Columns& c) {
-  const auto value = [&](std::optional<std::size_t> column, const char* what, double low,
-                         double high) -> std::optional<double> {
-    if (!column || trimmed(row[*column]).empty()) return std::nullopt;
-    return real_in(row[*column], what, low, high);
+ObjectFacts facts_of(const std::vector<std::string>& row, const Columns& columns) {
+  const auto value = [&](const char* what, double low, double high) -> std::optional<double> {
+    const auto column = columns.find(upper_case(what));
+    if (column == columns.end() || trimmed(row[column->second]).empty()) return std::nullopt;
+    return real_in(row[column->second], what, low, high);
   };
   ObjectFacts facts;
-  facts.standard_magnitude = value(c.magnitude, "standard_magnitude", -10, 40);
-  facts.rcs_m2 = value(c.rcs, "rcs_m2", 0, 1e6);
-  facts.dimensions_m = {value(c.length, "length_m", 0, 1e4).value_or(0),
-                        value(c.width, "width_m", 0, 1e4).value_or(0),
-                        value(c.height, "height_m", 0, 1e4).value_or(0)};
-  facts.albedo = value(c.albedo, "albedo", 1e-6, 1);
+  facts.standard_magnitude = value("standard_magnitude", -10, 40);
+  facts.rcs_m2 = value("rcs_m2", 0, 1e6);
+  facts.dimensions_m = {value("length_m", 0, 1e4).value_or(0), value("width_m", 0, 1e4).value_or(0),
+                        value("height_m", 0, 1e4).value_or(0)};
+  facts.albedo = value("albedo", 1e-6, 1);
   return facts;
 }
 
@@ -68,14 +60,14 @@ ObjectFactsFile parse_object_facts(std::string_view text, const std::string& sou
     if (!columns) {
       columns = columns_of(*next);
       width = csv_fields(*next).size();
-      if (!columns->number)
+      if (!columns->contains("CATALOGUE_NUMBER"))
         throw ConfigError(at_line(source, lines.line(), "no column catalogue_number" + got(*next)));
       continue;
     }
     try {
       const std::vector<std::string> row = csv_fields(*next);
       if (row.size() != width) throw RecordError("not as many fields as the header" + got(*next));
-      const std::string_view number = trimmed(row[*columns->number]);
+      const std::string_view number = trimmed(row[columns->at("CATALOGUE_NUMBER")]);
       const auto catalogue_number = parse_count(number);
       if (!catalogue_number) throw RecordError("catalogue_number is not a number" + got(number));
       if (!file.facts.try_emplace(*catalogue_number, facts_of(row, *columns)).second)
