@@ -20,5 +20,26 @@ TEST(CsvField, ReadsBack) {
   EXPECT_EQ(csv_fields(line), fields);
 }
 
+TEST(ParseReal, TakesWholeFiniteNumbersAlone) {
+  EXPECT_EQ(parse_real("+1.5e3"), 1500.0);
+  EXPECT_EQ(parse_real("-.5"), -0.5);
+  for (const char* text : {"", "+", "+-5", "++5", " 1", "1 ", "1x", "nan", "inf", "1e400"})
+    EXPECT_FALSE(parse_real(text)) << text;
+}
+
+TEST(LineReader, CountsLinesEndedByLfOrCrLf) {
+  LineReader lines("a \r\n\nb");
+  EXPECT_EQ(lines.next(), "a ");
+  EXPECT_EQ(lines.next(), "");
+  EXPECT_EQ(lines.next(), "b");
+  EXPECT_EQ(lines.line(), 3);
+  EXPECT_FALSE(lines.next());
+}
+
+TEST(AtLine, NamesSourceAndLine) {
+  EXPECT_EQ(at_line("some.csv", 7, "times must increase" + got("1\t2")),
+            "some.csv:7: times must increase, got \"1?2\"");
+}
+
 }  // namespace
 }  // namespace dmise
