@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/observability/metrics.h"
-#include "nodes/runtime/process/cpu_time.h"
 #include "nodes/runtime/process/json_log.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/process_memory.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 #include "time-master/announce.h"
@@ -205,11 +205,11 @@ void MasterProcess::advance() {
   if (phase == Phase::running) {
     started_ = now();
     messages_ = 0;
-    cpu_s_ = -process_cpu_seconds();
+    cpu_s_ = -process_cpu_s();
   }
   if (before == Phase::running) {
     ended_ = now();
-    cpu_s_ += process_cpu_seconds();
+    cpu_s_ += process_cpu_s();
   }
   const Tick granted = coordinator_.granted();
   if (phase == Phase::failed)

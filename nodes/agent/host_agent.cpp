@@ -5,8 +5,8 @@
 #include "core/base/error.h"
 #include "nodes/agent/host_agent_process.h"
 #include "nodes/runtime/master_link/run_result.h"
-#include "nodes/runtime/process/cpu_time.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/process_memory.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/transport/relay.h"
 #include "time-master/announce.h"
@@ -95,9 +95,9 @@ void HostAgentProcess::run() {
     }
     report_to_master();
     publisher_.publish(due && (link_.phase() == v1::PHASE_CONNECTING || over()));
-    if (link_.phase() == v1::PHASE_RUNNING && cpu_began_ < 0) cpu_began_ = process_cpu_seconds();
+    if (link_.phase() == v1::PHASE_RUNNING && cpu_began_ < 0) cpu_began_ = process_cpu_s();
     if (!over()) continue;
-    if (cpu_began_ >= 0 && !over_since) result_->cpu_s = process_cpu_seconds() - cpu_began_;
+    if (cpu_began_ >= 0 && !over_since) result_->cpu_s = process_cpu_s() - cpu_began_;
     barrier_->run_is_over();
     if (!over_since) over_since = now();
     const bool quiet = now() - busy_ > drained && now() - *over_since > drained;

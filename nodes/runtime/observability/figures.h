@@ -40,12 +40,4 @@ struct BrokerFigures {
   std::uint64_t refused = 0;   // under another name than their sender's
 };
 
-/// Resource usage of this process.
-struct ProcessFigures {
-  double cpu_s = 0.0;  // user and system
-  std::uint64_t resident_bytes = 0;
-  std::uint64_t open_files = 0;
-};
-ProcessFigures process_figures();
-
 }  // namespace dmise

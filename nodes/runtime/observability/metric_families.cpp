@@ -1,8 +1,10 @@
 #include "nodes/runtime/observability/metric_families.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/sim/run_phase.h"
+#include "nodes/runtime/process/process_memory.h"
 
 namespace dmise {
 namespace {
@@ -69,11 +71,16 @@ MetricFamilies families_of_build(const std::string& program, const std::string& 
   return b.take();
 }
 
-MetricFamilies families_of(const ProcessFigures& f, double started_s) {
+MetricFamilies families_of_process(double started_s) {
+  std::error_code ignored;
+  int open_files = 0;
+  for (std::filesystem::directory_iterator file("/proc/self/fd", ignored), end; file != end;
+       file.increment(ignored))
+    ++open_files;
   Builder b;
-  b.counter("process_cpu_seconds_total", "User and system time spent.", f.cpu_s);
-  b.gauge("process_resident_memory_bytes", "Memory in use.", f.resident_bytes);
-  b.gauge("process_open_fds", "Open file descriptors.", f.open_files);
+  b.counter("process_cpu_seconds_total", "User and system time spent.", process_cpu_s());
+  b.gauge("process_resident_memory_bytes", "Memory in use.", process_memory().resident_bytes);
+  b.gauge("process_open_fds", "Open file descriptors.", open_files);
   b.gauge("process_start_time_seconds", "Start time of the process since 1970.", started_s);
   return b.take();
 }

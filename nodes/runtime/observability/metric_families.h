@@ -14,8 +14,8 @@ namespace dmise {
 using MetricFamilies = std::vector<prometheus::MetricFamily>;
 
 MetricFamilies families_of_build(const std::string& program, const std::string& node);
-/// `started_s`: when the process started, seconds since 1970.
-MetricFamilies families_of(const ProcessFigures& figures, double started_s);
+/// Resource usage of this process. `started_s`: when it started, seconds since 1970.
+MetricFamilies families_of_process(double started_s);
 /// `node`: name of the process in the run, a label where there may be several of its kind.
 MetricFamilies families_of(const NodeFigures& figures, const std::string& node);
 MetricFamilies families_of(const FrameFigures& figures, const std::string& node);

@@ -47,7 +47,7 @@ struct Metrics::Board {
   /// In Prometheus's text format.
   std::string page() const {
     MetricFamilies all = families_of_build(program, node);
-    append(&all, families_of(process_figures(), started_s));
+    append(&all, families_of_process(started_s));
     {
       const std::lock_guard lock(mutex);
       for (const auto& [kind, figures] : latest)

@@ -9,6 +9,11 @@
 #include <string>
 
 namespace dmise {
+namespace {
+
+double seconds_of(const timespec& t) { return double(t.tv_sec) + 1e-9 * double(t.tv_nsec); }
+
+}  // namespace
 
 ProcessMemory process_memory() {
   ProcessMemory memory;
@@ -23,6 +28,12 @@ ProcessMemory process_memory() {
   return memory;
 }
 
+double process_cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return seconds_of(t);
+}
+
 double process_age_s() {
   std::ifstream file("/proc/self/stat");
   std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -35,8 +46,7 @@ double process_age_s() {
   fields >> began;
   timespec now{};
   clock_gettime(CLOCK_BOOTTIME, &now);
-  const double age_s =
-      double(now.tv_sec) + 1e-9 * double(now.tv_nsec) - began / double(sysconf(_SC_CLK_TCK));
+  const double age_s = seconds_of(now) - began / double(sysconf(_SC_CLK_TCK));
   return age_s > 0.0 ? age_s : 0.0;
 }
 

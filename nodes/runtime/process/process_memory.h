@@ -15,4 +15,7 @@ ProcessMemory process_memory();
 /// Time since the start of this process, to 0.01 s.
 double process_age_s();
 
+/// CPU time of all threads of this process.
+double process_cpu_s();
+
 }  // namespace dmise
