@@ -84,7 +84,7 @@ FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
 LiveTrack* Fusion::begin_catalogued(std::size_t object, SimTime seen) {
   auto prior = propagate(forces_, catalogue_.estimate(object), seen - sim_seconds(prior_before_s),
                          {.position_tolerance_m = 1e-2});
-  if (!prior || !is_sane(*prior)) return nullptr;
+  if (!prior || !OrbitFilter::can_start(*prior)) return nullptr;
   tracks_.push_back(
       std::make_unique<LiveTrack>(next_id_++, OrbitFilter(forces_, *prior, filter_), object));
   track_of_[object] = tracks_.back().get();
@@ -143,6 +143,7 @@ void Fusion::begin_from_arcs(const std::vector<LooseSource>& loose) {
 }
 
 void Fusion::begin(const StartedOrbit& orbit, int least_detections) {
+  if (!OrbitFilter::can_start(orbit.fit.estimate)) return;
   auto track = std::make_unique<LiveTrack>(
       next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
   track->least_detections = least_detections;

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -51,6 +53,25 @@ OrbitMatrix process_noise_root(double density_m2_per_s3, double dt_s) {
 
 void check(bool good, const char* what) {
   if (!good) throw Error(std::string("filter: ") + what);
+}
+
+/// Returns what is estimated, and the belief of a start with its root; none where the covariance is
+/// not positive definite.
+std::optional<std::pair<EstimatedRows, RootGaussian>> belief_of(const OrbitEstimate& start) {
+  EstimatedRows rows;
+  for (const int row : {drag_row, srp_row})
+    if (start.covariance(row, row) > 0) rows.rows[std::size_t(rows.count++)] = row;
+  const int n = rows.count;
+  const auto [scaled, sigma] =
+      unit_variances(start.covariance, std::span(rows.rows).first(std::size_t(n)));
+  if (!(sigma.array() > 0).all()) return std::nullopt;
+  const Eigen::LLT<OrbitMatrix> root(scaled);
+  if (root.info() != Eigen::Success) return std::nullopt;
+  RootGaussian belief;
+  belief.mean = start.state;
+  const OrbitMatrix lower = root.matrixL();
+  for (int i = 0; i < n; ++i) belief.root.row(i).head(n) = sigma[i] * lower.row(i).head(n);
+  return std::pair(rows, belief);
 }
 
 }  // namespace
@@ -162,6 +183,10 @@ struct OrbitFilter::Body {
   }
 };
 
+bool OrbitFilter::can_start(const OrbitEstimate& estimate) {
+  return is_sane(estimate) && belief_of(estimate).has_value();
+}
+
 OrbitFilter::OrbitFilter(const ForceModel& forces, const OrbitEstimate& start,
                          const FilterSettings& s)
     : body_(std::make_unique<Body>()) {
@@ -172,21 +197,11 @@ OrbitFilter::OrbitFilter(const ForceModel& forces, const OrbitEstimate& start,
   check(is_sane(start), "the estimate is not finite or out of range");
   body_->forces = &forces;
   body_->settings = s;
-  EstimatedRows& rows = body_->rows;
-  for (const int row : {drag_row, srp_row})
-    if (start.covariance(row, row) > 0) rows.rows[std::size_t(rows.count++)] = row;
-
-  const int n = rows.count;
-  const auto [scaled, sigma] =
-      unit_variances(start.covariance, std::span(rows.rows).first(std::size_t(n)));
-  check((sigma.array() > 0).all(), "the covariance is not positive definite");
-  const Eigen::LLT<OrbitMatrix> root(scaled);
-  check(root.info() == Eigen::Success, "the covariance is not positive definite");
+  const auto belief = belief_of(start);
+  check(belief.has_value(), "the covariance is not positive definite");
   Event first;
   first.observation.time = start.state.time;
-  first.belief.mean = start.state;
-  const OrbitMatrix lower = root.matrixL();
-  for (int i = 0; i < n; ++i) first.belief.root.row(i).head(n) = sigma[i] * lower.row(i).head(n);
+  std::tie(body_->rows, first.belief) = *belief;
   body_->events.resize(std::size_t(s.kept) + 1);
   body_->events[0] = std::move(first);
 }

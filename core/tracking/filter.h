@@ -22,6 +22,10 @@ struct FilterSettings {
 /// as not more than `kept` lie between.
 class OrbitFilter {
  public:
+  /// Whether a filter can start from it: it is sane, and its covariance is positive definite in the
+  /// rows that are estimated.
+  static bool can_start(const OrbitEstimate& estimate);
+
   /// Throws `Error` for an estimate that is not sane, a covariance that is not positive definite in
   /// the rows that are estimated, or settings out of range. `forces` must live as long.
   OrbitFilter(const ForceModel& forces, const OrbitEstimate& start,

@@ -213,12 +213,16 @@ TEST(Filter, EstimatesDrag) {
 TEST(Filter, RefusesBadStarts) {
   const ForceModel forces(ForceSettings{});
   OrbitEstimate start{{SimTime{}, {7e6, 0, 0}, {0, 7.5e3, 0}}};
+  EXPECT_FALSE(OrbitFilter::can_start(start));
   EXPECT_THROW(OrbitFilter(forces, start), Error);  // without a covariance
   start.covariance.diagonal() << 1, 1, 1, 1, 1, 1, 0, 0;
+  EXPECT_TRUE(OrbitFilter::can_start(start));
   EXPECT_NO_THROW(OrbitFilter(forces, start));
   start.covariance(0, 1) = start.covariance(1, 0) = 2;
+  EXPECT_FALSE(OrbitFilter::can_start(start));
   EXPECT_THROW(OrbitFilter(forces, start), Error);
   start.covariance(0, 1) = start.covariance(1, 0) = NAN;
+  EXPECT_FALSE(OrbitFilter::can_start(start));
   EXPECT_THROW(OrbitFilter(forces, start), Error);
 }
 
