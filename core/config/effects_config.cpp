@@ -77,7 +77,7 @@ const Section& accuracy_section() {
         "How accurate frames must be, or how long one may take. A plan leaves out what this does "
         "not call for.",
         {optional("seconds_per_frame", form::above(0.0, 86400.0),
-                  "Time of a frame [s], in place of errors.")}};
+                  "Time that a frame may take [s], in place of errors.")}};
     for (const auto& kind : error_kinds)
       made.keys.push_back(optional(kind.key, form::number(0.0, 1e6),
                                    std::string(kind.meaning) + " [" + kind.unit + "].",

@@ -10,7 +10,7 @@ void read_effects(const YamlValue& value, EffectSet& effects);
 /// Reads `accuracy:` of a scenario or a sensor. Throws `ConfigError`.
 Accuracy read_accuracy(const YamlValue& value);
 
-// What the tables of scenarios are made of.
+// Forms for the tables of scenarios and sensors.
 Forms effects_forms();
 Forms accuracy_forms();
 

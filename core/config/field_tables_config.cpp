@@ -111,7 +111,7 @@ Vignetting read_vignetting(const YamlValue& value) {
   if (illumination) {
     for (const char* key : {"natural", "corner", "power"})
       if (const auto other = map.find(key))
-        other->fail("goes without relative_illumination, which has all of it", false);
+        other->fail("can't stand beside relative_illumination, which includes it", false);
     const Radii radii = read_radii(map);
     if (radii.at.size() < 2) illumination->fail("needs two radii or more", false);
     v.table = read_column(*illumination, radii);
@@ -140,7 +140,7 @@ const Section& psf_field_section() {
                  optional("fwhm_tangential_px", widths(),
                           "The same across the radius; as along it if not given."),
                  optional("zernike_nm", form::map(field_zernike_section),
-                          "Aberrations, beside those of the whole field.")})};
+                          "Aberrations, in addition to those of the whole field.")})};
   return section;
 }
 

@@ -155,14 +155,13 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
   if (const auto v = map.find("psf_field")) {
     s.varying = read_psf_field(*v, diffraction);
     if (const auto grid = map.find("psf_grid"))
-      grid->fail("goes without psf_field: the level of that effect is the number of kernels",
-                 false);
-    if (width) width->fail("goes without psf_field, which has the widths", false);
+      grid->fail("can't stand beside psf_field, whose level is the number of kernels", false);
+    if (width) width->fail("can't stand beside psf_field, which has the widths", false);
     if (!diffraction) optics.psf_fwhm_px = 0.0;
   }
   if (const auto v = map.find("focus_drift")) s.drift = read_focus_drift(*v);
   if (s.field.any() && s.varying.any())
-    map.require("field_nm").fail("goes without psf_field", false);
+    map.require("field_nm").fail("can't stand beside psf_field", false);
   if (s.field.any() && s.grid_columns * s.grid_rows == 1)
     map.value().fail("field_nm needs a psf_grid of more than one kernel", false);
   if (const auto v = of_pupil("wavelengths")) s.wavelengths = int(v->integer());

@@ -88,12 +88,11 @@ const Section& network_section() {
        optional("restarts", form::integer(1, 1000000),
                 "Most restarts of a node, with `on_silent_node: restart`.", "5"),
        optional("real_time", form::number(0.0, 1e6),
-                "Simulated seconds in a second of the clock on the wall. 0: as fast as possible.",
-                "0"),
+                "Simulated seconds per second of wall-clock time. 0: as fast as possible.", "0"),
        optional("join_within_s", form::number(0.1, 86400.0),
                 "Time within which all nodes must have joined [s].", "30"),
        optional("publish_states", form::flag(),
-                "Publishes states of all objects for subscribers that are no nodes of the "
+                "Publishes states of all objects for subscribers that are not nodes of the "
                 "scenario.",
                 "on"),
        optional("sensors_propagate", form::flag(),
@@ -213,7 +212,7 @@ void check_cued(const Scenario& scenario, const SensorConfig& sensor) {
   const auto* cued = std::get_if<PointCued>(&sensor.pointing);
   if (!cued) return;
   const auto fail = [&](const char* why) { throw ConfigError(cued->where + ": " + why); };
-  if (!scenario.fusion) fail("needs fusion: who cues is the fusion node");
+  if (!scenario.fusion) fail("needs fusion: the fusion node gives it its tasks");
   if (!sensor.detect) fail("needs detection: on");
   if (sensor.effects.has(Persistence::facts) && sensor.camera.detector.persistence_fraction > 0.0)
     fail("persistence needs all exposures; set effects: {persistence: off}");

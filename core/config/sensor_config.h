@@ -9,7 +9,7 @@ namespace dmise {
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
                          bool detect, SimTime duration, const EarthConfig& earth = {});
 
-// What the tables of scenarios are made of.
+// The keys of a site and of a sensor.
 const Section& site_section();
 const Section& sensor_section();
 

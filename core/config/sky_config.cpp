@@ -65,7 +65,7 @@ const Section& sky_section() {
        optional("zenith_mag_per_arcsec2", brightness(),
                 "Brightness of the zenith [V mag/arcsec^2]; alone, that of the whole sky."),
        optional("parts", form::map(parts_section), "Parts switched on or off."),
-       optional("lamps", form::map(lamps_section), "What lamps the light pollution is of."),
+       optional("lamps", form::map(lamps_section), "The lamps that make the light pollution."),
        optional("cities", form::list(form::map(city_section)), "Glows at the horizon."),
        optional("airglow_zenith_mag_per_arcsec2", brightness(),
                 "Brightness of the airglow at the zenith [V mag/arcsec^2].", "22.4"),

@@ -37,7 +37,7 @@ struct ErrorKind {
 inline constexpr ErrorKind error_kinds[] = {
     {"photometry_mag", "mag", &ErrorBound::photometry_mag,
      "Greatest error of the brightness of a source"},
-    {"position_px", "px", &ErrorBound::position_px, "Greatest error of the place of a source"},
+    {"position_px", "px", &ErrorBound::position_px, "Greatest error of the position of a source"},
     {"background_sigma", "sigma", &ErrorBound::background_sigma,
      "Greatest error of the background between sources, in its noise"},
     {"noise", "relative", &ErrorBound::noise, "Greatest error of the noise of a pixel"}};

@@ -51,7 +51,7 @@ TEST(FieldTablesConfig, RefusesVignettingTablesThatAreNone) {
                  "needs one of radius_deg and radius_px");
   expect_refusal("vignetting: {radius_px: [0, 1]}\n", "radius_px: needs relative_illumination");
   expect_refusal("vignetting: {natural: on, radius_px: [0, 9], relative_illumination: [1, 0.5]}\n",
-                 "natural: goes without relative_illumination");
+                 "natural: can't stand beside relative_illumination");
 }
 
 TEST(FieldTablesConfig, ReadsABlurOverTheField) {
@@ -72,7 +72,7 @@ TEST(FieldTablesConfig, RefusesABlurThatCannotBe) {
                  "fwhm_radial_px: goes with psf: gaussian");
   expect_refusal("psf_field: {radius_px: [0, 9]}\n", "needs fwhm_radial_px");
   expect_refusal("psf_fwhm_px: 2\npsf_field: {radius_px: [0], fwhm_radial_px: [3]}\n",
-                 "psf_fwhm_px: goes without psf_field");
+                 "psf_fwhm_px: can't stand beside psf_field");
   expect_refusal("psf_field: {radius_px: [9, 3], fwhm_radial_px: [3, 3]}\n",
                  "radius_px[1]: must rise, got 3");
   expect_refusal(
@@ -85,7 +85,7 @@ TEST(FieldTablesConfig, RefusesABlurThatCannotBe) {
   expect_refusal(
       "psf: diffraction\npsf_grid: {columns: 3, rows: 3}\n"
       "psf_field: {radius_px: [0, 9], zernike_nm: {4: [5, 9]}}\n",
-      "psf_grid: goes without psf_field");
+      "psf_grid: can't stand beside psf_field");
 }
 
 TEST(FieldTablesConfig, ReadsAFocusThatDrifts) {
