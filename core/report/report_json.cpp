@@ -250,13 +250,13 @@ void write_detections(const RunContents& run, const DrawnFrames& choice, JsonWri
 void write_bins(JsonWriter& json, const char* key, const std::vector<Bin>& bins) {
   json.key(key).begin_array();
   for (const Bin& bin : bins) {
-    json.begin_object().key("from");
-    number(json, bin.from, 3);
+    json.begin_object();
+    number(json, "from", bin.from, 3);
     number(json, "to", bin.to, 3);
     json.field("truths", bin.truths).field("found", bin.found);
     json.field("low", rounded(bin.probability.low, 4));
-    json.field("high", rounded(bin.probability.high, 4)).key("theory");
-    number(json, bin.theory, 4);
+    json.field("high", rounded(bin.probability.high, 4));
+    number(json, "theory", bin.theory, 4);
     json.end_object();
   }
   json.end_array();
@@ -283,8 +283,8 @@ void write_plan(const RunContents& run, JsonWriter& json) {
       json.begin_object().field("sensor", s).field("effect", effect);
       json.key("levels").begin_object();
       for (const auto& [level, frames] : cost.levels) json.field(level, frames);
-      json.end_object().field("why", cost.why).key("predicted_s");
-      number(json,
+      json.end_object().field("why", cost.why);
+      number(json, "predicted_s",
              cost.planned_frames > 0 ? std::optional(cost.predicted_s / double(cost.planned_frames))
                                      : std::nullopt,
              6);
@@ -363,8 +363,8 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
   json.begin_object().field("status", run.status.empty() ? "unknown" : run.status);
   json.field("how", run.how).field("reason", run.reason).field("software", run.software);
   json.field("digest", run.digest).field("seed", run.seed).field("start_utc", run.start_utc);
-  json.field("duration_s", run.duration_s).field("tick_s", run.tick_s).key("wall_s");
-  number(json, run.wall_s, 2);
+  json.field("duration_s", run.duration_s).field("tick_s", run.tick_s);
+  number(json, "wall_s", run.wall_s, 2);
   json.field("every", choice.every);
   json.field("source_every", choice.source_every);
   json.field("frame_count", run.frames.size());

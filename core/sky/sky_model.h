@@ -59,11 +59,6 @@ inline constexpr auto sky_part<LightPollution> = &SkyParts::light_pollution;
 /// The parts that act: without those that are switched off or do not apply to the scene.
 SkyParts acting_sky(const SkyParts& parts, const EffectSet& switched, const SceneFacts& scene);
 
-/// Names in the order of SkyPart, as in YAML.
-inline constexpr std::array<std::string_view, sky_part_count> sky_part_names = {
-    "uniform",  "airglow",        "zodiacal_light", "faint_starlight", "scattered_moonlight",
-    "twilight", "light_pollution"};
-
 /// The parts that make the sky of a preset: "dark" (all natural ones), "suburban" and "urban"
 /// (these, and lamps that bring the zenith to 20 and 18 mag/arcsec2), "space" (uniform, 21).
 std::optional<SkyParts> sky_parts_named(std::string_view preset);

@@ -71,7 +71,7 @@ TEST(SkyModel, EachPartHasItsOwnSwitch) {
   EXPECT_EQ(only(&SkyParts::scattered_moonlight)[4], whole[4]);
   EXPECT_EQ(only(&SkyParts::twilight)[5], whole[5]);
   EXPECT_EQ(only(&SkyParts::light_pollution)[6], whole[6]);
-  for (int i = 1; i < 7; ++i) EXPECT_GT(whole[i], 0.0) << sky_part_names[i];
+  for (int i = 1; i < 7; ++i) EXPECT_GT(whole[i], 0.0) << i;
   EXPECT_EQ(SkyModel({}, scene, johnson_v(), extinction).photons_per_s_m2_sr(at), 0.0);
 }
 
