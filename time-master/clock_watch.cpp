@@ -21,8 +21,7 @@ void ClockWatch::check(const Coordinator& coordinator, Instant now) {
   if (coordinator.over()) return;
   const auto all = {&coordinator.members(), &coordinator.behind()};
   for (const std::string& name : joined_)
-    if (std::none_of(all.begin(), all.end(),
-                     [&](const auto* some) { return some->contains(name); }))
+    if (std::ranges::none_of(all, [&](const auto* some) { return some->contains(name); }))
       log_lost(name, -1, "waiting for another process of its name");
   joined_.clear();
   for (const auto* members : all)

@@ -97,8 +97,8 @@ class Coordinator {
   void report_behind(const std::string& agent, std::vector<std::string> waits_for,
                      const std::map<std::string, Tick>& done);
 
-  /// Ends a running run at once.
-  void stop(const std::string& reason);
+  /// Ends the run at once, failed. The first cause remains.
+  void fail_run(const std::string& cause);
   /// Finds nodes that have been silent or without progress for too long, and grants ticks that are
   /// due. Call at next_check() and next_due(), or earlier.
   void check(Instant now);
@@ -181,7 +181,6 @@ class Coordinator {
   void wait_or_fail(Member& member, const std::string& how, Instant now);
   void silence(Member& member, Instant now);
   void drop(Member& member, Instant now);
-  void fail_run(const std::string& cause);
   void connect_if_complete(Instant now);
   void start_if_ready(Instant now);
   bool record(Member& member, TickTally tally);

@@ -63,8 +63,6 @@ void Coordinator::fail(const std::string& name, const std::string& reason) {
     fail_run(name + ": " + reason);
 }
 
-void Coordinator::stop(const std::string& reason) { fail_run(reason); }
-
 void Coordinator::check(Instant now) {
   next_check_.reset();
   if (!over() && phase_ != Phase::running && options_.start_within.count() > 0) {

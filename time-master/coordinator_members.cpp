@@ -31,8 +31,7 @@ std::optional<std::string> Coordinator::join(const Request& request, Instant now
 }
 
 bool Coordinator::is_expected(const std::string& name) const {
-  return std::find(options_.expected.begin(), options_.expected.end(), name) !=
-         options_.expected.end();
+  return std::ranges::find(options_.expected, name) != options_.expected.end();
 }
 
 std::string Coordinator::not_expected(const std::string& name) const {

@@ -108,7 +108,7 @@ MasterResult MasterProcess::run() {
     receive_all();
     check_suspension(awake);
     awake = now();
-    if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
+    if (options_.stop && options_.stop->is_set()) coordinator_.fail_run("interrupted");
     for (const auto due : {coordinator_.next_due(), coordinator_.next_check()})
       if (due && now() >= *due) coordinator_.check(now());
     if (now() >= next_check) {
@@ -156,7 +156,7 @@ void MasterProcess::wait(nanoseconds at_most) {
 void MasterProcess::check_suspension(nanoseconds since) {
   const nanoseconds slept = now() - since;
   if (slept > options_.run.silent_after - 2 * coordinator_.options().heartbeat)
-    coordinator_.stop(fmt::format("time-master was stopped for {:.1f} s", to_seconds(slept)));
+    coordinator_.fail_run(fmt::format("time-master was stopped for {:.1f} s", to_seconds(slept)));
   else if (slept > options_.run.silent_after / 2)
     coordinator_.excuse(since, now());
 }

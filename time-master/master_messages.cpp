@@ -90,9 +90,9 @@ void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordin
     }
   }
   if (coordinator.over())
-    grant->set_deserted(std::none_of(
-        coordinator.members().begin(), coordinator.members().end(),
-        [](const auto& entry) { return entry.second.keeps_time && entry.second.active(); }));
+    grant->set_deserted(std::ranges::none_of(coordinator.members(), [](const auto& entry) {
+      return entry.second.keeps_time && entry.second.active();
+    }));
 }
 
 void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
@@ -140,7 +140,7 @@ void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {
     case v1::Control::ACTION_END_EARLY:
       return coordinator.end_early(why);
     case v1::Control::ACTION_ABORT:
-      return coordinator.stop(why);
+      return coordinator.fail_run(why);
     default:
       return;
   }

@@ -34,11 +34,10 @@ void HostPublisher::set_grant(v1::Grant grant, Tick settled) {
 void HostPublisher::note(const v1::TopicTally& tally) {
   if (!consumed_.contains(tally.topic())) return;
   auto& manifests = manifests_[tally.topic()];
-  const auto same =
-      std::find_if(manifests.begin(), manifests.end(), [&](const v1::TopicTally& other) {
+  if (std::ranges::any_of(manifests, [&](const v1::TopicTally& other) {
         return other.tick() == tally.tick() && other.incarnation() == tally.incarnation();
-      });
-  if (same != manifests.end()) return;
+      }))
+    return;
   manifests.push_back(tally);
   *fresh_.add_published() = tally;
 }

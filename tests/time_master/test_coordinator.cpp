@@ -318,7 +318,7 @@ TEST(Coordinator, KeepsTheFirstCause) {
   Coordinator master = started(options({"orbit", "camera"}));
   master.fail("camera", "disk full");
   master.fail("orbit", "nobody listens");
-  master.stop("interrupted");
+  master.fail_run("interrupted");
   EXPECT_EQ(master.cause(), "camera: disk full");
 }
 

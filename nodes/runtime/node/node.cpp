@@ -185,10 +185,7 @@ class Node {
     const v1::Topology& topology = *link_.topology();
     topology_version_ = link_.topology_version();
     inputs_.connect(topology);
-    const bool through_broker =
-        std::any_of(produces_.begin(), produces_.end(),
-                    [](const std::string& topic) { return !is_direct(topic); });
-    if (through_broker)
+    if (!std::ranges::all_of(produces_, is_direct))
       broker_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_,
                      topology.broker_password());
   }

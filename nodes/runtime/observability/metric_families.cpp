@@ -26,8 +26,7 @@ class Builder {
  private:
   prometheus::ClientMetric& sample(MetricType type, const char* name, const char* help,
                                    Labels labels) {
-    auto family = std::find_if(families_.begin(), families_.end(),
-                               [&](const auto& f) { return f.name == name; });
+    auto family = std::ranges::find(families_, name, &prometheus::MetricFamily::name);
     if (family == families_.end())
       family = families_.insert(families_.end(), {name, help, type, {}});
     family->metric.emplace_back().label = std::move(labels);
@@ -45,8 +44,7 @@ void add_times(Builder& b, const char* name, const char* help, const TimeSplit& 
 
 void add_node(Builder& b, const NodeStatus& node, const RunStatus& status) {
   const Labels of{{"node", node.name}};
-  const bool holds =
-      std::find(status.holding.begin(), status.holding.end(), node.name) != status.holding.end();
+  const bool holds = std::ranges::find(status.holding, node.name) != status.holding.end();
   b.gauge("dmise_clock_node_up", "1 while the time-master receives the node's heartbeats.",
           node.alive, of);
   b.gauge("dmise_clock_held", "1 while the clock waits for the node.", holds, of);

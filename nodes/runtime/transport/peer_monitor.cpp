@@ -163,8 +163,7 @@ std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
     if (connection.name.empty() && !connection.closed) strangers.push_back(&connection);
   }
   if (strangers.size() <= limits_.usual_strangers) return closed;
-  std::sort(strangers.begin(), strangers.end(),
-            [](const Connection* a, const Connection* b) { return a->since < b->since; });
+  std::ranges::sort(strangers, {}, &Connection::since);
   auto first = strangers.begin(), last = strangers.end();
   while (std::size_t(last - first) > limits_.usual_strangers &&
          now - (*first)->since >= limits_.grace)
