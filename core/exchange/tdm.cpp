@@ -59,7 +59,8 @@ void write(const RunProducts& run, const Segment& s, KvnText& kvn) {
   kvn.key("CORRECTIONS_APPLIED", "YES").line("META_STOP").line("DATA_START");
   for (const Sighting& sighting : s.sightings) {
     const std::string time = run.utc(sighting.time) + " ";
-    const double ra_deg = std::fmod(sighting.ra_rad / deg + 360.0, 360.0);
+    double ra_deg = std::fmod(sighting.ra_rad / deg + 360.0, 360.0);
+    if (ra_deg > 360.0 - 0.5e-9) ra_deg = 0.0;  // it would be rounded to 360, which is out of range
     kvn.key("ANGLE_1", time + fixed_text(ra_deg, angle_decimals));
     kvn.key("ANGLE_2", time + fixed_text(sighting.dec_rad / deg, angle_decimals));
     kvn.key("MAG", time + fixed_text(sighting.magnitude, 6));

@@ -32,6 +32,13 @@ TEST(TdmText, HasTheMeanBrightnessOfTruth) {
   EXPECT_TRUE(has(text, " 3.752575\n")) << text;  // half of the light: 0.7526 mag fainter
 }
 
+// Reference: CCSDS 503.0-B-2, 3.5: angles are below 360 deg.
+TEST(TdmText, RightAscensionIsNeverRoundedTo360) {
+  RunProducts run = run_with_detection();
+  run.detections[0].corrected_ra_rad = -1e-12 * deg;
+  EXPECT_TRUE(has(tdm_text({run, ProductKind::detections, {}}), "Z 0.000000000\n"));
+}
+
 TEST(TdmText, OfNothingIsRefused) {
   const RunProducts run = small_run();
   EXPECT_THROW(tdm_text({run, ProductKind::detections, {}}), ConfigError);
