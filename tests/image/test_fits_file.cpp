@@ -251,14 +251,18 @@ TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
             "frame.fits: BITPIX: must be 16, got -32");
 }
 
-// Times of rows are whole nanoseconds of 64 bits.
-TEST(FitsFile, RefusesARowTimeWithoutBound) {
+// Times, their differences and those of rows are whole nanoseconds of 64 bits.
+TEST(FitsFile, RefusesTimesWithoutBound) {
   FrameHeader header = sample_header();
   header.detector->row_time_us = 20;
   const std::string bytes = encoded(sample_counts(), header);
   EXPECT_EQ(decode_frame(bytes, "frame.fits").header, as_in_file(header));
   EXPECT_EQ(error_of(with_card(bytes, "ROWTIME", "ROWTIME = 1E300")),
             "frame.fits: ROWTIME: must be in [0, 1e5], got 1E300");
+  EXPECT_EQ(error_of(with_card(bytes, "SIMT-BEG", "SIMT-BEG= -9223372036854775808")),
+            "frame.fits: SIMT-BEG: must be >= -4e18, got -9223372036854775808");
+  EXPECT_EQ(error_of(with_card(bytes, "SIMT-END", "SIMT-END= 9223372036854775807")),
+            "frame.fits: SIMT-END: must be <= 4e18, got 9223372036854775807");
 }
 
 // CFITSIO divides by the sizes of tiles and blocks while it opens a compressed image, and makes
