@@ -61,12 +61,9 @@ bool Coordinator::record(Member& member, TickTally tally) {
     return true;
   }
   // A new agent does not know which topics its predecessor was asked to report.
-  const bool same =
-      member.agent
-          ? at->digest == tally.digest
-          : std::equal(at->topics.begin(), at->topics.end(), tally.topics.begin(),
-                       tally.topics.end(),
-                       [](const TopicTally& a, const TopicTally& b) { return a.same_content(b); });
+  const bool same = member.agent
+                        ? at->digest == tally.digest
+                        : std::ranges::equal(at->topics, tally.topics, &TopicTally::same_content);
   if (!same) {
     fail_run(member.node.name + ": tick " + std::to_string(tally.tick) +
              ", repeated after a restart, differs from the first time");
@@ -214,8 +211,7 @@ Tick Coordinator::keep_ticks(const std::string& name) const {
 }
 
 bool Coordinator::deserted() const {
-  return std::none_of(members_.begin(), members_.end(),
-                      [](const auto& entry) { return entry.second.active(); });
+  return std::ranges::none_of(members_, [](const auto& entry) { return entry.second.active(); });
 }
 
 }  // namespace dmise

@@ -172,8 +172,7 @@ std::vector<std::string> HostBarrier::holding() const {
 }
 
 bool HostBarrier::deserted() const {
-  return std::all_of(nodes_.begin(), nodes_.end(),
-                     [](const auto& entry) { return entry.second.left; });
+  return std::ranges::all_of(nodes_, [](const auto& entry) { return entry.second.left; });
 }
 
 }  // namespace dmise
