@@ -77,7 +77,9 @@ std::optional<Utc> date_of(const StandardCards& cards, const std::string& key) {
   return std::nullopt;
 }
 
-std::optional<Utc> mjd_of(const StandardCards& cards, const std::string& key) {
+/// An MJD in the form of a UTC: its fraction counts 86400 s in every scale but UTC, where the day
+/// with a leap second is longer.
+std::optional<Utc> mjd_of(const StandardCards& cards, const std::string& key, const Scale& scale) {
   const auto mjd = cards.number(key);
   if (!mjd) return std::nullopt;
   if (!(*mjd >= first_mjd && *mjd < last_mjd)) {
@@ -85,14 +87,15 @@ std::optional<Utc> mjd_of(const StandardCards& cards, const std::string& key) {
     return std::nullopt;
   }
   const double day = std::floor(*mjd);
-  return Utc{mjd_zero_jd + day, *mjd - day};
+  const double day_share = scale.ahead_of_tai_s ? day_s / utc_day_length_s(std::int64_t(day)) : 1.0;
+  return Utc{mjd_zero_jd + day, (*mjd - day) * day_share};
 }
 
 /// An instant by DATE-xxx, else MJD-xxx.
 std::optional<Utc> instant(const StandardCards& cards, const std::string& which,
                            const Scale& scale) {
   auto told = date_of(cards, "DATE-" + which);
-  if (!told) told = mjd_of(cards, "MJD-" + which);
+  if (!told) told = mjd_of(cards, "MJD-" + which, scale);
   if (!told) return std::nullopt;
   return to_utc(*told, scale);
 }

@@ -40,6 +40,8 @@ TEST(ExposureTimes, ReadsDatesInAllScales) {
   EXPECT_EQ(start_of({{"DATE-OBS", "2024-03-01"}, {"UT", "12:34:56.7"}}),
             "2024-03-01T12:34:56.700Z");
   EXPECT_EQ(start_of({{"MJD-OBS", "60370.5"}}), "2024-03-01T12:00:00.000Z");
+  // A day with a leap second in UTC, which has 86400 s in TAI.
+  EXPECT_EQ(start_of({{"MJD-OBS", "57753.5"}, {"TIMESYS", "TAI"}}), "2016-12-31T11:59:24.000Z");
   EXPECT_EQ(start_of({{"DATE-AVG", text}, {"EXPTIME", "20"}}), "2024-03-01T00:00:00.500Z");
   EXPECT_EQ(start_of({{"DATE-END", text}, {"EXPTIME", "10"}}), "2024-03-01T00:00:00.500Z");
   EXPECT_EQ(start_of({{"DATE-OBS", "2024-03-01T00:00:10.123456789012"}}),
