@@ -38,7 +38,8 @@ void add(const ShapeStar& star, const PsfField& field, Sum& sum) {
       TrailLight(star.trail, along_x), TrailLight(star.trail, along_diagonal)};
   const double reach_px = reach_widths * gaussian.parts[0].sigma_px;
   NormalEquations equations;
-  auto& [matrix, right] = equations;
+  SmallMatrix& matrix = equations.matrix;
+  const SmallVector& right = equations.right;
   TrailDerivatives by{}, unused{};
   const Around around(star.trail, reach_px);
   for (const FitPixel& p : star.pixels) {
