@@ -1,7 +1,5 @@
 #include "sensors/dataset/sample_maker.h"
 
-#include <algorithm>
-
 #include "core/base/formatted.h"
 #include "core/config/make_clock.h"
 #include "core/dataset/npy.h"

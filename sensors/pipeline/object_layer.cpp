@@ -1,7 +1,6 @@
 #include "sensors/pipeline/object_layer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 

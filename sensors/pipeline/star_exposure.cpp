@@ -1,7 +1,6 @@
 #include "sensors/pipeline/star_exposure.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/optics/projection.h"
 

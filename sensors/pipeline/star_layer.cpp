@@ -1,10 +1,7 @@
 #include "sensors/pipeline/star_layer.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
-#include <optional>
 #include <utility>
 
 #include "core/base/stopwatch.h"

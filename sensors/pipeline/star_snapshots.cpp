@@ -1,7 +1,5 @@
 #include "sensors/pipeline/star_snapshots.h"
 
-#include <algorithm>
-
 #include "core/optics/projection.h"
 
 namespace dmise {

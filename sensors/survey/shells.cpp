@@ -1,7 +1,6 @@
 #include "sensors/survey/shells.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/formatted.h"
 #include "core/orbit/catalogue_report.h"
