@@ -12,7 +12,6 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/optics/psf_plan.h"
-#include "core/optics/psf_table.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/throughput.h"
 

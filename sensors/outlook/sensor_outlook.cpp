@@ -7,7 +7,6 @@
 #include "core/base/formatted.h"
 #include "core/base/quantile.h"
 #include "core/base/units.h"
-#include "core/detection/components.h"
 #include "core/effects/frame_effects.h"
 #include "sensors/outlook/frame_worlds.h"
 #include "sensors/outlook/outlook_text.h"

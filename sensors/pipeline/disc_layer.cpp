@@ -5,7 +5,6 @@
 #include <functional>
 #include <vector>
 
-#include "core/base/units.h"
 #include "core/frames/rotation_angle.h"
 #include "core/optics/projection.h"
 #include "core/sky/earth_disc.h"

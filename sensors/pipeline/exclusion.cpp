@@ -8,8 +8,6 @@
 #include "core/base/golden_section.h"
 #include "core/base/units.h"
 #include "core/sky/earth_limb.h"
-#include "core/sky/moon_disc.h"
-#include "core/sky/sun_disc.h"
 #include "sensors/pipeline/bodies_in_field.h"
 #include "sensors/pipeline/view.h"
 

@@ -8,7 +8,6 @@
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/psf_plan.h"
-#include "core/optics/psf_table.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/shadow.h"
 #include "sensors/pipeline/error_facts.h"

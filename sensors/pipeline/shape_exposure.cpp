@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/optics/projection.h"
-
 namespace dmise {
 namespace {
 

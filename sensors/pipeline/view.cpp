@@ -6,7 +6,6 @@
 #include "core/base/units.h"
 #include "core/config/effect_list.h"
 #include "core/facets/moonlight.h"
-#include "core/optics/projection.h"
 #include "core/sky/moon_disc.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"

@@ -5,7 +5,6 @@
 
 #include "core/base/units.h"
 #include "core/visibility/sightings.h"
-#include "sensors/pipeline/objects_in_field.h"
 
 namespace dmise {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/base/formatted.h"
 #include "core/base/paths.h"
 #include "core/base/text_file.h"
-#include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/time/iso8601.h"
 
