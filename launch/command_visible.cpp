@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/paths.h"
+#include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
@@ -54,6 +55,10 @@ TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, cons
   if (steps > most_steps)
     throw ConfigError("--step: " + std::to_string(std::llround(steps)) +
                       " instants, more than 5000000: use a longer step or a shorter --duration");
+  constexpr double longest_s = 9.2e9;  // 64 bits of nanoseconds
+  if (from.seconds() + duration_s + options.step_s > longest_s)
+    throw ConfigError("--from: the span ends more than 291 years after the scenario's start, got " +
+                      printable(options.from));
   return covering_grid(from, sim_seconds(duration_s), sim_seconds(options.step_s));
 }
 

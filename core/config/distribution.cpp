@@ -82,7 +82,11 @@ Distribution::Distribution(const YamlValue& value) : value_(value) {
   if (name_ == "uniform" && begin && end) {
     kind_ = Kind::time;
     from_ = ends[0].text();
-    most_ = Clock(*begin).sim_time(*end).seconds();
+    try {
+      most_ = Clock(*begin).sim_time(*end).seconds();
+    } catch (const Error& e) {
+      ends[1].fail(e.what(), false);
+    }
   } else if (name_ == "integers") {
     kind_ = Kind::integers;
     const std::int64_t limit = std::int64_t(most_integer);

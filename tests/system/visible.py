@@ -55,6 +55,8 @@ def test(binary, directory):
     check(len(day.stdout.splitlines()) == 1, "by day it leaves none")
 
     for arguments, code, message in [
+            (["--from", "2308-01-01T00:00:00Z", "--duration", "3.2e8", "--step", "3600"], 2,
+             r"dmise: --from: the span ends more than 291 years after .*"),
             (["--from", "yesterday"], 2, r"dmise: --from: not a UTC time: .*"),
             (["--sensor", "alpa"], 2, r"dmise: .*: no sensor is named alpa, did you mean alpha\?"),
             (["--step", "0"], 2, r"dmise visible: --step: Value 0 not in range.*"),
