@@ -16,7 +16,8 @@ std::string MetricsPorts::next(const std::string& name) {
   if (!on_) return "";
   if (address_.port == 0) return "auto";
   if (address_.port > 65535) throw ConfigError("metrics: no port left for " + name);
-  const std::string target = address_.host + ":" + std::to_string(address_.port++);
+  const std::string target = text_of(address_);
+  ++address_.port;
   targets_.emplace_back(name, target);
   return target;
 }

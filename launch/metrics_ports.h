@@ -22,7 +22,7 @@ class MetricsPorts {
 
  private:
   bool on_ = false;
-  MetricsAddress address_;
+  HostPort address_;
   std::vector<std::pair<std::string, std::string>> targets_;  // name, HOST:PORT
 };
 

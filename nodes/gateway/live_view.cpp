@@ -198,7 +198,7 @@ void LiveView::take(const RunStatus& status, const std::map<std::string, std::ui
     json.field("compute_s", node.times.compute_s).field("message_s", node.times.messaging_s);
     json.field("wait_s", node.times.waiting_s).field("frames", node.times.frames);
     json.field("detections", node.times.detections);
-    json.field("resident_bytes", node.times.peak_resident_bytes);
+    json.field("peak_resident_bytes", node.times.peak_resident_bytes);
     json.field("gaps", missed == gaps.end() ? std::uint64_t(0) : missed->second).end_object();
   }
   latest_.set(MessageSlot::status, {json.end_array().end_object().take()});

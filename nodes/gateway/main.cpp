@@ -1,7 +1,6 @@
 // dmise-gateway: shows a run to browsers.
 #include <spdlog/spdlog.h>
 
-#include <charconv>
 #include <filesystem>
 
 #include "core/base/error.h"
@@ -10,6 +9,7 @@
 #include "nodes/gateway/run_observer.h"
 #include "nodes/gateway/web_server.h"
 #include "nodes/runtime/process/event.h"
+#include "nodes/runtime/process/host_port.h"
 #include "nodes/runtime/process/json_log.h"
 #include "nodes/runtime/program/program.h"
 #include "nodes/runtime/security/security.h"
@@ -33,13 +33,10 @@ std::string default_dashboard() {
 }
 
 void set_address(const std::string& listen, WebServerOptions* options) {
-  const auto colon = listen.rfind(':');
-  const char* const end = listen.data() + listen.size();
-  if (colon == std::string::npos ||
-      std::from_chars(listen.data() + colon + 1, end, options->port) !=
-          std::from_chars_result{end, std::errc{}})
-    throw ConfigError("--listen: must be HOST:PORT, got " + listen);
-  options->host = listen.substr(0, colon);
+  const auto address = host_and_port(listen);
+  if (!address) throw ConfigError("--listen: must be HOST:PORT or [IPv6]:PORT, got " + listen);
+  options->host = address->host;
+  options->port = std::uint16_t(address->port);
 }
 
 int serve(const CommonFlags& flags, const GatewayOptions& options) {
@@ -70,7 +67,7 @@ int serve(const CommonFlags& flags, const GatewayOptions& options) {
                        latest, history);
   WebServer server(web, {files, latest, history, previews,
                          [&](const ClockCommand& command) { return observer.command(command); }});
-  const std::string url = "http://" + web.host + ":" + std::to_string(server.port()) + "/";
+  const std::string url = "http://" + text_of(HostPort{web.host, server.port()}) + "/";
   log_event(spdlog::level::info, "gateway_served", {{"url", url}}, "the live view is at " + url);
   if (files.empty()) spdlog::warn("the dashboard is not built: ./dmise dashboard");
   if (!options.announce_file.empty()) write_file_whole(options.announce_file, url + "\n");

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "nodes/gateway/connection.h"
+#include "nodes/runtime/process/host_port.h"
 
 namespace dmise {
 namespace {
@@ -19,7 +20,7 @@ struct WebServer::Work {
         acceptor(io) {
     error_code error;
     const auto address = boost::asio::ip::make_address(hub.options.host, error);
-    const std::string where = hub.options.host + ":" + std::to_string(hub.options.port);
+    const std::string where = text_of(HostPort{hub.options.host, hub.options.port});
     if (error) throw ConfigError(where + ": must be an IP address and a port");
     if (!address.is_loopback() && !hub.options.tokens.any())
       throw ConfigError(where + ": not loopback: needs a file of tokens");

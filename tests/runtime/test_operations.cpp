@@ -161,10 +161,11 @@ TEST(Metrics, AreServedOnLoopbackAndNowhereUnlessAskedFor) {
   EXPECT_EQ(metrics_address("9100").host, "127.0.0.1");
   EXPECT_EQ(metrics_address("9100").port, 9100);
   EXPECT_EQ(metrics_address("0.0.0.0:9100").host, "0.0.0.0");
+  EXPECT_EQ(metrics_address("[::1]:9100").host, "::1");
 }
 
 TEST(Metrics, OfNoUsableAddressAreOneLine) {
-  for (const std::string wrong : {"0", "65536", "port", ":80", "9100x"}) {
+  for (const std::string wrong : {"0", "65536", "port", ":80", "9100x", "::1:80"}) {
     Child master({bin + "dmise-time-master", "--expect", "a", "--metrics", wrong});
     EXPECT_EQ(master.exit_code(), 2) << wrong;
     EXPECT_THAT(

@@ -4,7 +4,7 @@ export type Triple = [number, number, number];
 export interface Run { type: "run"; start_utc: string; start_utc_ms: number | null; tick_s: number; last_tick: number }
 export interface NodeState {
   name: string; state: string; tick: number; start: number; lag_ticks: number; ticks_per_s: number;
-  compute_s: number; message_s: number; wait_s: number; frames: number; detections: number; resident_bytes: number; gaps: number;
+  compute_s: number; message_s: number; wait_s: number; frames: number; detections: number; peak_resident_bytes: number; gaps: number;
 }
 export interface Status {
   type: "status"; run_id: string; phase: string; paused: boolean; pace: number; cause: string; settled_tick: number; granted_tick: number;

@@ -3,7 +3,6 @@
 #include <prometheus/text_serializer.h>
 
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include "nodes/runtime/observability/metric_families.h"
 #include "nodes/runtime/observability/metrics_server.h"
 #include "nodes/runtime/process/json_log.h"
+#include "nodes/runtime/process/process_memory.h"
 #include "nodes/runtime/process/seconds.h"
 
 namespace dmise {
@@ -25,18 +25,14 @@ void append(MetricFamilies* all, MetricFamilies more) {
 
 }  // namespace
 
-MetricsAddress metrics_address(const std::string& text) {
-  MetricsAddress address;
-  if (text == "auto") return address;
-  const auto colon = text.rfind(':');
-  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
-  if (error != std::errc() || end != port.data() + port.size() || address.port < 1 ||
-      address.port > 65535 || colon == 0)
+HostPort metrics_address(const std::string& text) {
+  if (text == "auto") return {};
+  const bool alone = text.find(':') == std::string::npos;
+  const auto address = host_and_port(alone ? HostPort{}.host + ":" + text : text);
+  if (!address || address->port == 0)
     throw ConfigError("metrics: must be auto, PORT or HOST:PORT with a port of 1 to 65535, got " +
                       text);
-  if (colon != std::string::npos) address.host = text.substr(0, colon);
-  return address;
+  return *address;
 }
 
 /// The latest values.
@@ -57,22 +53,23 @@ struct Metrics::Board {
   }
 
   const std::string program, node;
-  const double started_s = to_seconds(std::chrono::system_clock::now().time_since_epoch());
+  const double started_s =
+      to_seconds(std::chrono::system_clock::now().time_since_epoch()) - process_age_s();
   mutable std::mutex mutex;               // guards what follows
   std::map<std::size_t, Figures> latest;  // by kind
 };
 
 Metrics::Metrics(const std::string& where, const std::string& program, const std::string& node)
     : board_(std::make_shared<Board>(program, node)) {
-  const MetricsAddress address = metrics_address(where);
+  HostPort address = metrics_address(where);
   try {
     server_ = std::make_unique<MetricsServer>(address.host, address.port,
                                               [board = board_] { return board->page(); });
   } catch (const Error& error) {
-    throw Error("metrics: can't listen at " + address.host + ":" + std::to_string(address.port) +
-                ": " + error.what());
+    throw Error("metrics: can't listen at " + text_of(address) + ": " + error.what());
   }
-  url_ = "http://" + address.host + ":" + std::to_string(server_->port()) + "/metrics";
+  address.port = server_->port();
+  url_ = "http://" + text_of(address) + "/metrics";
   metrics_of_process = this;
   log_event(spdlog::level::info, "metrics_served", {{"url", url_}}, "metrics at " + url_);
 }

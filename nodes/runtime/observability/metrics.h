@@ -5,6 +5,7 @@
 
 #include "nodes/runtime/observability/figures.h"
 #include "nodes/runtime/observability/status.h"
+#include "nodes/runtime/process/host_port.h"
 
 namespace dmise {
 
@@ -13,13 +14,9 @@ class MetricsServer;
 /// Values of a process. `RunStatus`, the state of the run, is set by the time-master.
 using Figures = std::variant<NodeFigures, FrameFigures, BrokerFigures, RunStatus>;
 
-struct MetricsAddress {
-  std::string host = "127.0.0.1";
-  int port = 0;  // 0: any free one
-};
-
-/// Parses "auto", "PORT" or "HOST:PORT". Throws `ConfigError`.
-MetricsAddress metrics_address(const std::string& text);
+/// Parses "auto", "PORT", "HOST:PORT" or "[IPv6]:PORT"; the host is 127.0.0.1 where none is given.
+/// Throws `ConfigError`.
+HostPort metrics_address(const std::string& text);
 
 /// Serves metrics of this process at /metrics over HTTP in Prometheus's text format from a thread
 /// of its own. The process sets values as they change; a scrape returns the latest.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/nearest_name.h"
+#include "nodes/runtime/process/host_port.h"
 
 namespace dmise {
 namespace {
@@ -23,11 +24,8 @@ bool is_port(std::string_view text) {
 
 /// HOST:PORT, [IPv6]:PORT.
 bool is_host_and_port(std::string_view text) {
-  const auto colon = text.rfind(':');
-  if (colon == text.npos || colon == 0 || !is_port(text.substr(colon + 1))) return false;
-  const std::string_view host = text.substr(0, colon);
-  if (host.front() == '[') return host.back() == ']' && host.size() > 2;
-  return host.find_first_of(":/ ") == host.npos;
+  const auto parts = split_host_and_port(text);
+  return parts && is_port(parts->second);
 }
 
 /// Splits off "SCHEME:" and slashes.

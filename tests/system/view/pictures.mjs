@@ -56,7 +56,7 @@ function pretend({ objects, sensors }) {
         this.tell({
           type: "status", run_id: "1", phase: "running", paused: false, pace: 10, cause: "", settled_tick: t, granted_tick: t + 1, last_tick: 1e6, time_s: t,
           rate: 10, ticks_per_s: 10, overruns: 0, worst_lag_s: 0, missing: [], holding: [names[t % sensors]], past: { from_s: 0, to_s: t, states: t },
-          nodes: names.map((name) => ({ name, state: "alive", tick: t, start: 1, lag_ticks: 0, ticks_per_s: 10, compute_s: t, message_s: 0, wait_s: 0, frames: t, detections: t, resident_bytes: 1e8, gaps: 0 })),
+          nodes: names.map((name) => ({ name, state: "alive", tick: t, start: 1, lag_ticks: 0, ticks_per_s: 10, compute_s: t, message_s: 0, wait_s: 0, frames: t, detections: t, peak_resident_bytes: 1e8, gaps: 0 })),
         });
         const direction = (i, k) => {
           const lon = i * 2.4, lat = ((i * 0.37) % 2) - 1, up = [Math.cos(lat) * Math.cos(lon), Math.cos(lat) * Math.sin(lon), Math.sin(lat)];
