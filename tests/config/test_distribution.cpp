@@ -128,7 +128,7 @@ TEST(Distribution, WhatCannotBeIsNamed) {
       {"{uniform: [2018-02-30T00:00:00Z, 2018-03-01T00:00:00Z]}",
        "x.uniform[0]: must be a UTC time such as"},
       {"{uniform: [1972-01-02T00:00:00Z, 9999-01-01T00:00:00Z]}",
-       "s.yaml:1:40: x.uniform[1]: 9999-01-01T00:00:00Z: is more than 292 years from 1972-01-02"},
+       "s.yaml:1:37: x.uniform[1]: 9999-01-01T00:00:00Z: is more than 292 years from 1972-01-02"},
       {"{uniform: [2018-01-02T00:00:00Z, 5]}", "x.uniform[1]: must be a UTC time such as"},
       {"{log_uniform: [0, 1]}", "x.log_uniform[0]: must be > 0, got 0"},
       {"{integers: [1, 2.5]}", "x.integers[1]: must be a whole number, got 2.5"},

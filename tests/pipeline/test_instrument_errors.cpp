@@ -230,8 +230,8 @@ TEST(InstrumentErrors, TruthHasTheTrueAttitude) {
   EXPECT_EQ(to_json(truth_of(exact.frame()), utc).find("camera_from_gcrs"), std::string::npos);
 }
 
-// A vibration of 0.4 Hz displaces exposures of 0.5 s, one of 40 Hz blurs them; both are 6 arcsec rms,
-// 0.29 px. The truth and the header do not know of it.
+// A vibration of 0.4 Hz displaces exposures of 0.5 s, one of 40 Hz blurs them; both are 6 arcsec
+// rms, 0.29 px. The truth and the header do not know of it.
 TEST(InstrumentErrors, VibrationDisplacesBySlowAndBlursByFastFrequencies) {
   const auto scene = [](const std::string& hz) {
     return among_stars(", vibration: {sine_hz: [" + hz + "], sine_rms_arcsec: [60]}", 0.5, 200);
