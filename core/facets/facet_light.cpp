@@ -60,6 +60,26 @@ FacetLight::FacetLight(Mesh mesh, const Band& band, bool emits)
   if (!emits) std::fill(set_.emitted.begin(), set_.emitted.end(), 0.0);
 }
 
+FacetLight FacetLight::turned(const HingedPanel& panel, const Vec<Body>& to_sun) const {
+  const Rotation<Body, Body> rotation = panel_rotation(panel.axes, to_sun);
+  FacetLight light = *this;
+  turn_panel(light.mesh_, panel.hinge_m, rotation);
+  FacetSet& set = light.set_;
+  const auto& triangles = mesh_.triangles;
+  for (std::size_t f = 0; f < set.count; ++f) {
+    if (!triangles[f].panel) continue;
+    const Vec<Body> normal = rotation * set.normal(f);
+    set.normal_x[f] = normal.x;
+    set.normal_y[f] = normal.y;
+    set.normal_z[f] = normal.z;
+  }
+  for (const auto& b : set.bumps)
+    for (std::size_t i = b.begin; i < b.end && triangles[b.facet].panel; ++i)
+      set.bump_normals[i].normal = rotation * set.bump_normals[i].normal;
+  light.convex_ = convex_ && std::ranges::all_of(triangles, &Mesh::Triangle::panel);
+  return light;
+}
+
 std::vector<double> FacetLight::free_area_m2(const FacetShadow* sun,
                                              const FacetShadow& viewer) const {
   std::vector<double> area = set_.area_m2;

@@ -7,6 +7,7 @@
 #include "core/effects/effects.h"
 #include "core/facets/facet_set.h"
 #include "core/facets/facet_shadow.h"
+#include "core/materials/panel.h"
 
 namespace dmise {
 
@@ -33,6 +34,9 @@ class FacetLight {
  public:
   /// Without `emits` the object has no thermal emission.
   FacetLight(Mesh mesh, const Band& band, bool emits = true);
+
+  /// The same object with its panel turned to the Sun (panel.h). Costs a copy, no band means.
+  FacetLight turned(const HingedPanel& panel, const Vec<Body>& to_sun) const;
 
   const Mesh& mesh() const { return mesh_; }
   const FacetSet& facets() const { return set_; }

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/materials/panel.h"
 
 namespace dmise {
 namespace {
@@ -41,13 +42,15 @@ void drop_empty(Mesh& mesh, MeshLines& lines, std::vector<std::string>& notes) {
   if (kept == 0) throw ConfigError(lines.file + ": no facet has an area");
 }
 
-/// For each vertex, the index of the first vertex at the same position.
+/// For each vertex, the index of the first vertex of the same part, panel or not, at the same
+/// position.
 std::vector<std::uint32_t> welded(const Mesh& mesh) {
-  std::map<std::tuple<double, double, double>, std::uint32_t> seen;
+  std::map<std::tuple<bool, double, double, double>, std::uint32_t> seen;
+  const std::vector<bool> of_panel = panel_vertices(mesh);
   std::vector<std::uint32_t> place(mesh.vertex_m.size());
   for (std::size_t i = 0; i < place.size(); ++i) {
     const auto& v = mesh.vertex_m[i];
-    place[i] = seen.try_emplace({v.x, v.y, v.z}, std::uint32_t(i)).first->second;
+    place[i] = seen.try_emplace({of_panel[i], v.x, v.y, v.z}, std::uint32_t(i)).first->second;
   }
   return place;
 }

@@ -20,7 +20,8 @@ struct MeshLines {
 ///   outwards;
 /// - an open surface, or one without an outside, is a sheet: each facet gets a back of the same
 ///   material.
-/// Surfaces are connected components of shared edges; vertices at equal positions count as one.
+/// Surfaces are connected components of shared edges; vertices at equal positions count as one,
+/// but for those of a panel, which turns without the rest.
 /// Throws `ConfigError` if no facet is left.
 std::vector<std::string> repair(Mesh& mesh, MeshLines lines);
 

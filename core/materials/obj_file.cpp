@@ -10,6 +10,7 @@
 #include "core/base/text_file.h"
 #include "core/materials/line_fields.h"
 #include "core/materials/mesh_repair.h"
+#include "core/materials/panel.h"
 #include "core/materials/polygon.h"
 
 namespace dmise {
@@ -28,6 +29,7 @@ class Reader {
   ObjModel read() {
     while (fields_.next()) line();
     if (model_.mesh.triangles.empty()) throw ConfigError(fields_.file() + ": has no face");
+    separate_panel(model_.mesh);
     const auto repairs = repair(model_.mesh, std::move(lines_));
     model_.notes.insert(model_.notes.end(), repairs.begin(), repairs.end());
     return std::move(model_);
@@ -50,11 +52,13 @@ class Reader {
       use(fields_.rest());
     } else if (key == "mtllib") {
       library();
+    } else if (key == "o" || key == "g") {
+      name(key == "o");
     } else if (key == "l" || key == "p") {
       once(left_out_, "lines and points have no area and are ignored");
-    } else if (key != "vn" && key != "o" && key != "g" && key != "s" && key != "mg" &&
-               key != "bevel" && key != "c_interp" && key != "d_interp" && key != "lod" &&
-               key != "usemap" && key != "maplib" && key != "shadow_obj" && key != "trace_obj") {
+    } else if (key != "vn" && key != "s" && key != "mg" && key != "bevel" && key != "c_interp" &&
+               key != "d_interp" && key != "lod" && key != "usemap" && key != "maplib" &&
+               key != "shadow_obj" && key != "trace_obj") {
       refuse(key);
     }
   }
@@ -71,6 +75,20 @@ class Reader {
   void once(bool& noted, const char* what) {
     if (!noted) model_.notes.push_back(fields_.where() + ": " + what);
     noted = true;
+  }
+
+  /// An object has one name, which may have blanks; a face may be in several groups.
+  void name(bool object) {
+    const std::size_t end = object ? std::min<std::size_t>(fields_.size(), 2) : fields_.size();
+    bool panel = false;
+    for (std::size_t i = 1; i < end; ++i) panel = panel || is_panel(fields_[i]);
+    if (object) object_is_panel_ = panel;
+    group_is_panel_ = !object && panel;
+  }
+
+  static bool is_panel(std::string_view name) {
+    return std::ranges::equal(name.substr(0, 5), std::string_view("panel"),
+                              [](char a, char b) { return (a | 0x20) == b; });
   }
 
   float texture_number(std::size_t field) const {
@@ -129,6 +147,7 @@ class Reader {
     const std::uint32_t material = placed ? material_ : untextured();
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       Mesh::Triangle t{{of[a].vertex, of[b].vertex, of[c].vertex}, material};
+      t.panel = sources_.names_panel && (object_is_panel_ || group_is_panel_);
       if (placed) t.place = {place_[of[a].place], place_[of[b].place], place_[of[c].place]};
       model_.mesh.triangles.push_back(t);
       lines_.line.push_back(fields_.line());
@@ -217,6 +236,7 @@ class Reader {
   std::map<std::uint32_t, std::uint32_t> untextured_;
   std::vector<TexturePlace> place_;
   std::size_t texels_ = 0;
+  bool object_is_panel_ = false, group_is_panel_ = false;
   bool left_out_ = false, grey_ = false, no_place_ = false;
 };
 
@@ -226,7 +246,7 @@ ObjModel parse_obj(std::string_view text, const std::string& file, const ObjSour
   return Reader(text, file, sources).read();
 }
 
-ObjModel load_obj(const std::string& path, const MaterialByName& library) {
+ObjModel load_obj(const std::string& path, const MaterialByName& library, bool names_panel) {
   const auto folder = std::filesystem::path(path).parent_path();
   const auto read_mtl = [&](const std::string& name) {
     return read_text_file((folder / name).string(), std::size_t(1) << 26);
@@ -234,7 +254,7 @@ ObjModel load_obj(const std::string& path, const MaterialByName& library) {
   const auto read = [&](const std::string& name, PictureOf what) {
     return read_picture((folder / name).string(), what);
   };
-  return parse_obj(read_text_file(path), path, {read_mtl, library, read});
+  return parse_obj(read_text_file(path), path, {read_mtl, library, read, names_panel});
 }
 
 }  // namespace dmise

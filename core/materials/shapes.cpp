@@ -22,6 +22,15 @@ void add_face(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std
   mesh.triangles.push_back({{a, c, d}});
 }
 
+/// The mesh as a panel.
+Mesh as_panel(Mesh mesh) {
+  for (auto& t : mesh.triangles) t.panel = true;
+  return mesh;
+}
+
+constexpr double chassis_thickness_m = 0.2;
+constexpr double array_edge_z_m = -chassis_thickness_m / 2 - 0.1;  // of the array, at the chassis
+
 /// Vertices of a geodesic sphere without duplicates.
 class Geodesic {
  public:
@@ -139,20 +148,24 @@ Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_fr
               const Material& wing_back) {
   if (!(size.gap_m >= 0.0)) throw Error("box-wing: gap must be >= 0");
   const double away = size.body_m.y / 2 + size.gap_m + size.wing_length_m / 2;
-  const Mesh wing = plate(size.wing_width_m, size.wing_length_m, wing_front, wing_back);
+  const Mesh wing = as_panel(plate(size.wing_width_m, size.wing_length_m, wing_front, wing_back));
   return merged(merged(box(size.body_m, body), moved(wing, {0, away, 0})),
                 moved(wing, {0, -away, 0}));
 }
 
 Mesh starlink_like(const Material& chassis, const Material& array_front,
                    const Material& array_back) {
-  constexpr double length_m = 2.8, width_m = 3.65 / length_m, thickness_m = 0.2;
+  constexpr double length_m = 2.8, width_m = 3.65 / length_m;
   constexpr double array_width_m = 2.75, array_height_m = 22.0 / array_width_m;
   // A plate that faces +z, turned about x to face +y and stand along -z.
-  Mesh array = plate(array_width_m, array_height_m, array_front, array_back);
+  Mesh array = as_panel(plate(array_width_m, array_height_m, array_front, array_back));
   for (auto& v : array.vertex_m) v = {v.x, v.z, -v.y};
-  array = moved(array, {0, 0, -thickness_m / 2 - 0.1 - array_height_m / 2});
-  return merged(box({length_m, width_m, thickness_m}, chassis), array);
+  array = moved(array, {0, 0, array_edge_z_m - array_height_m / 2});
+  return merged(box({length_m, width_m, chassis_thickness_m}, chassis), array);
+}
+
+HingedPanel starlink_like_panel() {
+  return {.axes = {.hinge = {1, 0, 0}, .normal = {0, 1, 0}}, .hinge_m = {0, 0, array_edge_z_m}};
 }
 
 }  // namespace dmise

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/materials/mesh.h"
+#include "core/materials/panel.h"
 
 // Generated meshes, centred on the origin of the body's axes, lengths in metres; sheets have a
 // separate front and back. Throw `Error` for sizes <= 0.
@@ -18,7 +18,8 @@ Mesh sphere(double radius_m, std::size_t facets, const Material& material);
 /// A closed cylinder about z of `sides` >= 3 flat sides with corners on it.
 Mesh cylinder(double radius_m, double length_m, int sides, const Material& material);
 
-/// A box with two wings along +y and -y that face +z.
+/// A box with two wings along +y and -y that face +z: its panel, by default hinged about y through
+/// the origin.
 struct BoxWing {
   Vec<Body> body_m{1.8, 1.6, 2.0};
   double wing_length_m = 5.0;  // along y, of each
@@ -30,8 +31,10 @@ Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_fr
 
 /// A flat chassis of 3.65 m2 that faces +z (the Earth in nadir attitude) with one array of 22 m2
 /// that is perpendicular to it and faces +y: areas of the Starlink v1.5 models in Fankhauser, Tyson
-/// & Askari 2023, "Satellite Optical Brightness".
+/// & Askari 2023, "Satellite Optical Brightness". The array is its panel.
 Mesh starlink_like(const Material& chassis, const Material& array_front,
                    const Material& array_back);
+/// The hinge of its array: the edge at the chassis, along x.
+HingedPanel starlink_like_panel();
 
 }  // namespace dmise

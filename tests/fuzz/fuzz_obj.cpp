@@ -6,11 +6,12 @@
 
 #include "core/base/error.h"
 #include "core/materials/obj_file.h"
+#include "core/materials/panel.h"
 
 using namespace dmise;
 
 // What is read is a mesh that light can be computed with: every facet has three vertices, a
-// material and an area. Everything else is a ConfigError.
+// material and an area, and a panel its own vertices. Everything else is a ConfigError.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const ObjSources sources{
@@ -20,12 +21,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       },
       [](const std::string&, PictureOf) {
         return LinearPicture{2, 1, 1, {0.25f, 0.75f}};
-      }};
+      },
+      true};
   try {
     const ObjModel model = parse_obj(text, "fuzz", sources);
+    const auto of_panel = panel_vertices(model.mesh);
     for (const auto& t : model.mesh.triangles) {
       for (const auto corner : t.corner)
-        if (corner >= model.mesh.vertex_m.size()) std::abort();
+        if (corner >= of_panel.size() || of_panel[corner] != t.panel) std::abort();
       if (t.material >= model.mesh.materials.size()) std::abort();
       const double area = norm(double_area_m2(model.mesh, t));
       if (!(area > 0) || !std::isfinite(area)) std::abort();
