@@ -125,7 +125,11 @@ class Loader {
                                           .name = object.name,
                                           .sphere = object.sphere,
                                           .element_age_s = aged(age_days),
-                                          .panel = object.panel});
+                                          .panel = axes_of(object.panel)});
+  }
+
+  static std::optional<SunTrackingPanel> axes_of(const std::optional<HingedPanel>& panel) {
+    return panel ? std::optional(panel->axes) : std::nullopt;
   }
 
   double aged(double age_days) {

@@ -8,7 +8,6 @@ namespace dmise {
 namespace {
 
 constexpr double most_rpm = 6000.0;
-constexpr double least_sine = 1e-6;  // between a panel's hinge and its normal
 
 const Section& inertial_section() {
   static const Section section{
@@ -72,16 +71,6 @@ Forms attitude_forms() {
   return form::choice({"nadir", "sun_tracking"}) | form::map(attitude_section);
 }
 
-const Section& panel_section() {
-  static const Section section{
-      "panel",
-      "A panel that turns about its hinge to face the Sun.",
-      {optional("hinge", form::direction(), "The hinge in body axes.", "[0, 1, 0]"),
-       optional("normal", form::direction(), "The normal of the panel at rest, in body axes.",
-                "[0, 0, 1]")}};
-  return section;
-}
-
 AttitudeConfig read_attitude(const YamlValue& value) {
   AttitudeConfig attitude;
   if (value.is_scalar()) {
@@ -101,17 +90,6 @@ AttitudeConfig read_attitude(const YamlValue& value) {
     attitude.model = read_attitude_table(attitude.table_path);
   }
   return attitude;
-}
-
-SunTrackingPanel read_panel(const YamlValue& value) {
-  YamlMap map(value, panel_section());
-  SunTrackingPanel panel;
-  if (const auto hinge = map.find("hinge")) panel.hinge = direction_of<Body>(*hinge);
-  if (const auto normal = map.find("normal")) panel.normal = direction_of<Body>(*normal);
-  if (norm(cross(panel.hinge, panel.normal)) < least_sine)
-    value.fail("hinge and normal must not be parallel", false);
-  map.done();
-  return panel;
 }
 
 }  // namespace dmise

@@ -15,11 +15,7 @@ struct AttitudeConfig {
 /// Throws `ConfigError` `file:line:column: key: reason`.
 AttitudeConfig read_attitude(const YamlValue& value);
 
-/// Reads `{hinge: [x, y, z], normal: [x, y, z]}` in body axes.
-SunTrackingPanel read_panel(const YamlValue& value);
-
-/// The forms of `attitude`, and the keys of `panel`.
+/// The forms of `attitude`.
 Forms attitude_forms();
-const Section& panel_section();
 
 }  // namespace dmise

@@ -75,12 +75,14 @@ class Reader {
   const MaterialLibrary& library_;
 };
 
-std::string digest_of(const Mesh& mesh) {
+std::string digest_of(const Mesh& mesh, bool with_panel) {
   JsonWriter json;
   json.begin_array();
   for (const auto& v : mesh.vertex_m) json.value(v.x).value(v.y).value(v.z);
   for (const auto& t : mesh.triangles)
     json.value(t.corner[0]).value(t.corner[1]).value(t.corner[2]).value(t.material);
+  for (const auto& t : mesh.triangles)
+    if (with_panel) json.value(int(t.panel));
   const auto write_texture = [&](const Texture& texture, double height_m) {
     json.value(texture.scale_u).value(texture.scale_v);
     json.value(texture.offset_u).value(texture.offset_v).value(int(texture.clamp)).value(height_m);
@@ -144,7 +146,7 @@ const Section& geometry_section() {
   return section;
 }
 
-GeometryConfig read_geometry(const YamlValue& value) {
+GeometryConfig read_geometry(const YamlValue& value, bool with_panel) {
   YamlMap map(value, geometry_section());
   GeometryConfig geometry;
   geometry.materials_path = find_preset("materials", "library", "");
@@ -158,16 +160,19 @@ GeometryConfig read_geometry(const YamlValue& value) {
   Mesh mesh;
   if (obj) {
     geometry.obj_path = obj->existing_file();
-    auto read =
-        load_obj(geometry.obj_path, [&](std::string_view name) { return library.find(name); });
+    auto read = load_obj(
+        geometry.obj_path, [&](std::string_view name) { return library.find(name); }, with_panel);
     mesh = std::move(read.mesh);
     geometry.notes = std::move(read.notes);
   } else {
     mesh = Reader(map, library).model(model->choice());
+    if (model->choice() == "starlink-like") geometry.panel = starlink_like_panel();
   }
-  mesh = scaled(std::move(mesh), map.number_or("scale", 1.0));
+  const double scale = map.number_or("scale", 1.0);
+  mesh = scaled(std::move(mesh), scale);
+  geometry.panel.hinge_m = geometry.panel.hinge_m * scale;
   map.done();
-  geometry.digest = digest_of(mesh);
+  geometry.digest = digest_of(mesh, with_panel);
   geometry.mesh = std::make_shared<const Mesh>(std::move(mesh));
   return geometry;
 }

@@ -4,22 +4,23 @@
 #include <vector>
 
 #include "core/config/yaml_reader.h"
-#include "core/materials/mesh.h"
+#include "core/materials/panel.h"
 
 namespace dmise {
 
 /// Shape of an object: `geometry: {model: box-wing, body: kapton, ..}` or `{obj: FILE}`.
 struct GeometryConfig {
   std::shared_ptr<const Mesh> mesh;
+  HingedPanel panel;               // how its panel turns, if it has one, unless told otherwise
   std::string obj_path;            // resolved; empty for a model
   std::string materials_path;      // of the library, resolved
   std::vector<std::string> notes;  // what was ignored or repaired in an OBJ, one line each
   std::string digest;              // of the mesh and its materials
 };
 
-/// Reads the mapping; docs/models/materials.md lists the keys. Throws `ConfigError`, for an OBJ
-/// with its own file and line.
-GeometryConfig read_geometry(const YamlValue& value);
+/// Reads the mapping; docs/models/materials.md lists the keys. An OBJ has a panel only
+/// `with_panel`; so does the digest. Throws `ConfigError`, for an OBJ with its own file and line.
+GeometryConfig read_geometry(const YamlValue& value, bool with_panel = false);
 
 /// The keys of `geometry`.
 const Section& geometry_section();

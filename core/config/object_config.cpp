@@ -43,7 +43,8 @@ const Section& own_section() {
            required("motion", form::map(motion_section), "How it moves."),
            optional("attitude", attitude_forms(),
                     "How it is turned: towards the Earth, the Sun, or as given."),
-           optional("panel", form::map(panel_section), "A panel that faces the Sun."),
+           optional("panel", form::map(panel_section),
+                    "The panel of its geometry that faces the Sun."),
            optional("geometry", form::map(geometry_section), "Its shape; needs an attitude.")},
           sphere_keys())};
   return section;
@@ -93,14 +94,11 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
     object.catalogue_number = static_cast<std::uint32_t>(number->integer());
   object.motion = read_motion(map.require("motion"), start, object.name, earth);
   if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
-  if (const auto panel = map.find("panel")) {
-    if (!object.attitude) panel->fail("needs an attitude", false);
-    object.panel = read_panel(*panel);
-  }
-  if (const auto geometry = map.find("geometry")) {
-    if (!object.attitude) geometry->fail("needs an attitude", false);
-    object.geometry = read_geometry(*geometry);
-  }
+  const auto panel = map.find("panel"), geometry = map.find("geometry");
+  for (const auto& value : {panel, geometry})
+    if (value && !object.attitude) value->fail("needs an attitude", false);
+  if (geometry) object.geometry = read_geometry(*geometry, panel.has_value());
+  if (panel) object.panel = read_panel(*panel, object.geometry ? &*object.geometry : nullptr);
   object.sphere = read_sphere(map);
   map.done();
   if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))

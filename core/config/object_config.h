@@ -7,6 +7,7 @@
 #include "core/config/attitude_config.h"
 #include "core/config/geometry_config.h"
 #include "core/config/motion_config.h"
+#include "core/config/panel_config.h"
 #include "core/config/yaml_reader.h"
 #include "core/photometry/diffuse_sphere.h"
 
@@ -30,7 +31,7 @@ struct OwnObject {
   std::uint32_t catalogue_number = 0;  // 0: assigned, see `first_own_number`
   MotionConfig motion;
   std::optional<AttitudeConfig> attitude;
-  std::optional<SunTrackingPanel> panel;
+  std::optional<HingedPanel> panel;  // of the geometry, where there is one
   std::optional<GeometryConfig> geometry;
   DiffuseSphere sphere;  // without a geometry
 };

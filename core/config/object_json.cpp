@@ -67,8 +67,9 @@ void write_own(JsonWriter& json, const OwnObject& object) {
   if (object.attitude) std::visit(AttitudeWriter{json}, object.attitude->model);
   if (object.geometry) json.field("geometry", object.geometry->digest);
   if (object.panel) {
-    write(json, "panel_hinge", object.panel->hinge);
-    write(json, "panel_normal", object.panel->normal);
+    write(json, "panel_hinge", object.panel->axes.hinge);
+    write(json, "panel_normal", object.panel->axes.normal);
+    if (object.geometry) write(json, "panel_hinge_m", object.panel->hinge_m);
   }
   json.end_object();
 }
