@@ -196,8 +196,9 @@ void FrameComparison::find_sources(const FrameProducts& reference) {
     double size_px = 0.0;
     for (const OwnObject& own : scene_.scenario().own_objects)
       if (own.name == object.name && own.geometry)
-        size_px = radius_m(*own.geometry->mesh) / std::max(1.0, object.true_range_m) /
-                  optics.pixel_angle_rad();
+        size_px = (own.panel ? radius_m(*own.geometry->mesh, *own.panel)
+                             : radius_m(*own.geometry->mesh)) /
+                  std::max(1.0, object.true_range_m) / optics.pixel_angle_rad();
     measure({.name = object.name,
              .trail = line_along({object.start_x_px, object.start_y_px},
                                  {object.middle_x_px, object.middle_y_px},

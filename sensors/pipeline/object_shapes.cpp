@@ -20,11 +20,16 @@ ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& ba
   for (const auto& object : objects) {
     if (!object.geometry) continue;
     const Mesh& mesh = *object.geometry->mesh;
-    const double radius_m = dmise::radius_m(mesh);
+    const double radius_m =
+        object.panel ? dmise::radius_m(mesh, *object.panel) : dmise::radius_m(mesh);
     shapes_.emplace(object.catalogue_number,
-                    ObjectShape{FacetLight(mesh, band, emits), radius_m,
-                                std::min(surface_m2(mesh), pi * radius_m * radius_m)});
+                    ObjectShape{std::make_shared<const FacetLight>(mesh, band, emits), object.panel,
+                                radius_m, std::min(surface_m2(mesh), pi * radius_m * radius_m)});
   }
+}
+
+std::shared_ptr<const FacetLight> ObjectShape::light(const Vec<Body>& to_sun) const {
+  return panel ? std::make_shared<const FacetLight>(at_rest->turned(*panel, to_sun)) : at_rest;
 }
 
 const ObjectShape* ObjectShapes::of(std::uint32_t catalogue_number) const {
@@ -82,41 +87,69 @@ std::vector<LightSource> secondary_light_on(const View& view, const Vec<Gcrs>& p
   return sources;
 }
 
+namespace {
+
+double secondary_photons_per_s_m2(const ObjectShapes& shapes, const FacetLight& light,
+                                  const ShapePose& pose) {
+  if (pose.secondary.empty()) return 0.0;
+  return shapes.sun_photons() / (pose.sun_distance_au * pose.sun_distance_au) *
+         light.reflected_m2_per_sr(pose.secondary, pose.to_viewer) / (pose.range_m * pose.range_m);
+}
+
+}  // namespace
+
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                               const ShapePose& pose, double sunlit) {
-  double photons_per_s_sr = shape.light.emitted_photons_per_s_sr(pose.to_viewer);
+  const auto facets = shape.light(pose.to_sun);
+  double photons_per_s_sr = facets->emitted_photons_per_s_sr(pose.to_viewer);
   if (sunlit > 0.0)
     photons_per_s_sr += shapes.sun_photons() * sunlit /
                         (pose.sun_distance_au * pose.sun_distance_au) *
-                        shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
+                        facets->reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
   return photons_per_s_sr / (pose.range_m * pose.range_m) +
-         secondary_photons_per_s_m2(shapes, shape, pose);
+         secondary_photons_per_s_m2(shapes, *facets, pose);
 }
 
 double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                                   const ShapePose& pose) {
-  if (pose.secondary.empty()) return 0.0;
-  return shapes.sun_photons() / (pose.sun_distance_au * pose.sun_distance_au) *
-         shape.light.reflected_m2_per_sr(pose.secondary, pose.to_viewer) /
-         (pose.range_m * pose.range_m);
+  return secondary_photons_per_s_m2(shapes, *shape.light(pose.to_sun), pose);
 }
 
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {
-  const double light = shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer) /
+  const double light = shape.light(pose.to_sun)->reflected_m2_per_sr(pose.to_sun, pose.to_viewer) /
                        (pose.range_m * pose.range_m * pose.sun_distance_au * pose.sun_distance_au);
   return light > 0.0 ? std::min(darkest_mag, sun_v_mag + magnitude_of_light(light)) : darkest_mag;
 }
 
+namespace {
+
+template <class F>
+double turn_between_rad(const Rotation<Gcrs, F>& a, const Rotation<Gcrs, F>& b) {
+  double trace = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) trace += a.m[i][j] * b.m[i][j];
+  return std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0));
+}
+
+}  // namespace
+
 double turn_rad(const View& view, std::size_t object) {
   const auto& exposure = view.times();
   const double step = std::min(1.0, 0.01 / exposure.seconds());  // of the exposure: 10 ms at most
-  const auto a = view.world().gcrs_from_body(object, exposure.at(1.0 - step));
+  const SimTime before = exposure.at(1.0 - step);
+  const auto a = view.world().gcrs_from_body(object, before);
   const auto b = view.world().gcrs_from_body(object, exposure.end);
   if (!a || !b) return 0.0;
-  double trace = 0.0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) trace += a->m[i][j] * b->m[i][j];
-  return std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0)) / step;
+  double turn = turn_between_rad(*a, *b);
+  if (const auto& panel = view.world().roster().objects[object].panel) {
+    const auto gcrs_from_panel = [&](const Rotation<Gcrs, Body>& gcrs_from_body, SimTime t) {
+      const Vec<Gcrs> to_sun = view.environment().sun_m - view.world().motion(object, t).position_m;
+      return gcrs_from_body * body_from_panel(*panel, gcrs_from_body.inverse() * to_sun);
+    };
+    turn = std::max(
+        turn, turn_between_rad(gcrs_from_panel(*a, before), gcrs_from_panel(*b, exposure.end)));
+  }
+  return turn / step;
 }
 
 }  // namespace dmise

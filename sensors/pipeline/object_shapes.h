@@ -13,9 +13,13 @@ namespace dmise {
 
 /// Surface of an object in one sensor's band.
 struct ObjectShape {
-  FacetLight light;
-  double radius_m = 0.0;       // of the sphere about its origin that holds it
+  std::shared_ptr<const FacetLight> at_rest;  // with its panel so
+  std::optional<HingedPanel> panel;
+  double radius_m = 0.0;  // of the sphere about its origin that holds it, at any angle of the panel
   double silhouette_m2 = 0.0;  // most: its surface, and the disc of the sphere
+
+  /// Its light with the panel turned to the Sun.
+  std::shared_ptr<const FacetLight> light(const Vec<Body>& to_sun) const;
 };
 
 /// How a shape is turned and lit at one instant, as the observer sees it.
@@ -81,8 +85,8 @@ double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape&
 /// V magnitude of the sunlight alone when fully sunlit, `darkest_mag` at most.
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose);
 
-/// Angle that the object turns by over the exposure [rad], by its rate at the end; 0 without an
-/// attitude.
+/// Angle that the object turns by over the exposure [rad], or its panel if that is more, by the
+/// rate at the end; 0 without an attitude.
 double turn_rad(const View& view, std::size_t object);
 
 }  // namespace dmise

@@ -46,9 +46,9 @@ class ShapePainter {
 
   void add(const ShapeSnapshot& snapshot) {
     if (!(snapshot.photons_per_s_m2 > 0.0)) add_point(snapshot);
-    const Mesh& mesh = snapshot.shape->light.mesh();
-    const ShapeWindow window =
-        window_on(optics_, mesh, snapshot, reach_px(stage_.plan()) + reach_px(snapshot.sweep));
+    const auto light = snapshot.shape->light(snapshot.pose.to_sun);
+    const ShapeWindow window = window_on(optics_, light->mesh(), snapshot,
+                                         reach_px(stage_.plan()) + reach_px(snapshot.sweep));
     const TileCamera& whole = window.camera;
     for (int top = 0; top < whole.rows; top += piece_px)
       for (int left = 0; left < whole.columns; left += piece_px) {
@@ -57,7 +57,7 @@ class ShapePainter {
         piece.top += top;
         piece.columns = std::min(piece_px, whole.columns - left);
         piece.rows = std::min(piece_px, whole.rows - top);
-        add_piece(snapshot, window, piece);
+        add_piece(snapshot, *light, window, piece);
       }
   }
 
@@ -68,15 +68,15 @@ class ShapePainter {
   }
 
  private:
-  void add_piece(const ShapeSnapshot& snapshot, const ShapeWindow& window,
+  void add_piece(const ShapeSnapshot& snapshot, const FacetLight& light, const ShapeWindow& window,
                  const TileCamera& camera) {
     const double au2 = snapshot.pose.sun_distance_au * snapshot.pose.sun_distance_au;
     std::vector<LightSource> sources{{snapshot.pose.to_sun, snapshot.sunlit}};
     const auto& secondary = snapshot.pose.secondary;
     sources.insert(sources.end(), secondary.begin(), secondary.end());
     const Tile tile = shapes_.renderer().draw(
-        {.mesh = &snapshot.shape->light.mesh(),
-         .bands = {{&snapshot.shape->light.facets(), shapes_.sun_photons() / au2}},
+        {.mesh = &light.mesh(),
+         .bands = {{&light.facets(), shapes_.sun_photons() / au2}},
          .camera_from_body = window.tile_from_body,
          .object_m = window.object_m,
          .sources = std::move(sources),

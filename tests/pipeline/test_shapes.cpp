@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 #include "sensors/pipeline/throughput.h"
 #include "tests/pipeline/harness.h"
@@ -134,6 +136,100 @@ TEST(Shapes, SnapshotsKeepTheLight) {
   EXPECT_NEAR(
       target_of(snapshots.frame()).rendered_signal_e / target_of(path.frame()).rendered_signal_e,
       1.0, 1e-4);
+}
+
+/// Two wings of 0.5 m2 each, times the square of `scale`, reflectance 0.2 in front, on a body of
+/// nothing.
+std::string wings(const std::string& scale, const std::string& panel) {
+  return "    geometry: {model: box-wing, body_m: [1e-5, 1e-5, 1e-5], wing_length_m: 1, "
+         "wing_width_m: 0.5, front: grey, back: black-paint, scale: " +
+         scale + "}\n" + panel;
+}
+
+/// Closed form, rho / pi A cos i cos r: the normal is the Sun's direction less its part along y,
+/// the hinge.
+double wings_m2_per_sr(const ShapePose& pose, const Vec<Body>& to_source, double scale) {
+  const Vec<Body> normal = unit(Vec<Body>{pose.to_sun.x, 0, pose.to_sun.z});
+  return 0.2 / pi * scale * scale * std::max(0.0, dot(normal, to_source)) *
+         std::max(0.0, dot(normal, pose.to_viewer));
+}
+
+ShapePose pose_of_target(const Stage& stage, const View& view) {
+  const SimTime t = view.times().middle;
+  return *shape_pose(view, object_index(stage.world.roster(), "target", "test"), t,
+                     view.observer(t).position_m);
+}
+
+TEST(Shapes, WingsOfAPanelAreThoseOfAPlateThatFollowsTheSun) {
+  for (const std::string attitude :
+       {"nadir", "sun_tracking",
+        "{spinning: {axis: [0.3, 1, 0.5], rate_rpm: 0.1, phase_deg: -60}}"})
+    for (const auto& [scale, optics] : {std::pair{std::string("0.02"), wide}, {"1", tele}}) {
+      SCOPED_TRACE(attitude + " " + scale);
+      Stage stage(scenario(wings(scale, "    panel: {}"), optics, attitude));
+      const auto frame = stage.frame();
+      const auto& truth = target_of(frame);
+      const View view(stage.scenario.sensors.at(0), frame_times(stage.scenario.sensors.at(0), 1),
+                      stage.world);
+      const ShapePose pose = pose_of_target(stage, view);
+      const double light =
+          wings_m2_per_sr(pose, pose.to_sun, std::stod(scale)) /
+          (pose.range_m * pose.range_m * pose.sun_distance_au * pose.sun_distance_au);
+      EXPECT_NEAR(truth.true_magnitude, sun_v_mag + magnitude_of_light(light), 1e-3);
+      EXPECT_EQ(truth.resolved, scale == "1");
+      EXPECT_NEAR(truth.rendered_signal_e / expected_e(frame), 1.0, 5e-3);
+      if (scale == "1") continue;
+      Stage fixed(scenario(wings(scale, ""), optics, attitude));
+      EXPECT_GT(std::abs(target_of(fixed.frame()).true_magnitude - truth.true_magnitude), 0.05);
+    }
+}
+
+// Light from another side falls on the wings as they are turned to the Sun.
+TEST(Shapes, SecondaryLightFallsOnTurnedWings) {
+  Stage stage(scenario(wings("1", "    panel: {}"), tele));
+  const auto& sensor = stage.scenario.sensors.at(0);
+  const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
+  const View view(sensor, frame_times(sensor, 1), stage.world);
+  ShapePose pose = pose_of_target(stage, view);
+  const Vec<Body> source = unit(pose.to_sun + pose.to_viewer + Vec<Body>{0.2, 0.5, -0.3});
+  pose.secondary = {{source, 0.25}};
+  const ObjectShape& shape = *shapes.of(stage.scenario.own_objects.at(1).catalogue_number);
+  const double expected =
+      shapes.sun_photons() * 0.25 * wings_m2_per_sr(pose, source, 1) /
+      (pose.range_m * pose.range_m * pose.sun_distance_au * pose.sun_distance_au);
+  EXPECT_GT(expected, 0.0);
+  EXPECT_NEAR(secondary_photons_per_s_m2(shapes, shape, pose) / expected, 1.0, 1e-6);
+  EXPECT_NEAR(shape_photons_per_s_m2(shapes, shape, pose, 0.0) / expected, 1.0, 1e-6);
+}
+
+TEST(Shapes, APanelGivesTheSameBytesByAnyNumberOfThreads) {
+  for (const std::string& optics : {wide, tele}) {
+    const std::string text =
+        scenario("    geometry: {model: box-wing, scale: 0.5}\n    panel: {hinge_m: [0, 0, 0.2]}",
+                 optics, "{spinning: {axis: [0.3, 1, 0], rate_rpm: 7}}");
+    const auto counts = [&](int threads) {
+      return Stage(text, "", "", threads).frame(2).counts.pixels;
+    };
+    const auto one = counts(1);
+    EXPECT_GT(*std::max_element(one.begin(), one.end()), 0);
+    EXPECT_EQ(counts(2), one);
+    EXPECT_EQ(counts(5), one);
+  }
+}
+
+// A body that spins about the wings' hinge while they face the Sun, and one whose wings turn faster
+// than itself.
+TEST(Shapes, TurnByTheFasterOfBodyAndPanel) {
+  const auto turn = [&](const std::string& attitude, const std::string& panel) {
+    const Stage stage(scenario(wings("1", panel), tele, attitude));
+    const View view(stage.scenario.sensors.at(0), frame_times(stage.scenario.sensors.at(0), 1),
+                    stage.world);
+    return turn_rad(view, object_index(stage.world.roster(), "target", "test"));
+  };
+  const double body = 2 * pi * 6 / 60 * 0.5;  // 6 rpm, 0.5 s
+  EXPECT_NEAR(turn("{spinning: {axis: [0, 1, 0], rate_rpm: 6}}", "    panel: {}"), body, 1e-4);
+  EXPECT_NEAR(turn("{spinning: {axis: [0, 0, 1], rate_rpm: 6}}", ""), body, 1e-4);
+  EXPECT_GT(turn("{spinning: {axis: [0, 0, 1], rate_rpm: 6}}", "    panel: {}"), body * 1.01);
 }
 
 TEST(Shapes, WrongGeometryPointsAtItsLine) {
