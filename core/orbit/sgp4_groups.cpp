@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 #include <new>
-#include <ranges>
 
 namespace dmise::sgp4 {
 namespace {
@@ -65,9 +64,15 @@ void Group::make_nodes() {
 }
 
 std::size_t Group::first_block_from(std::size_t object) const {
-  const auto numbers = std::views::iota(std::size_t{0}, blocks());
-  const auto is_before = [&](std::size_t block) { return index[block * block_lanes] < object; };
-  return std::size_t(std::ranges::partition_point(numbers, is_before) - numbers.begin());
+  std::size_t low = 0, high = blocks();
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (index[middle * block_lanes] < object)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
 }
 
 DeepBlock Group::deep_block(std::size_t k, ResonanceNode* node) const {
