@@ -218,7 +218,7 @@ class Join {
 /// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" unexpanded.
 int slot_of_environment() {
   const char* text = std::getenv("DMISE_SLOT");
-  return text ? parse_integer(text).value_or(0) : 0;
+  return text ? parse_integer(trimmed(text)).value_or(0) : 0;
 }
 
 /// For the help text: "broker, ... or sensor".

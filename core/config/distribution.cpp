@@ -112,7 +112,7 @@ std::string Distribution::scalar(double x) const {
   if (kind_ == Kind::time) return format_utc(Clock(parse_utc(from_)).utc(sim_seconds(x)), 6);
   // 12 digits: what the last bits of a logarithm are differs between processors.
   const std::string text = formatted(kind_ == Kind::integers ? "%.0f" : "%.12g", x);
-  const double rounded = *parse_real(text);
+  const double rounded = parse_real(text).value_or(x);  // infinite: not a number of a file
   if (rounded >= least_ && rounded <= most_) return text;
   return shortest_text(rounded < least_ ? least_ : most_);
 }

@@ -79,7 +79,7 @@ MonotoneCubic read_column(const YamlValue& list, const Radii& radii) {
 int noll_index(const std::string& key, int least, const YamlValue& value) {
   constexpr int most = 66;
   const auto noll = parse_integer(key);
-  if (!noll || *noll < least || *noll > most)
+  if (!noll || key.starts_with('+') || *noll < least || *noll > most)
     value.fail("the key must be Noll's index of a Zernike term, " + std::to_string(least) + ".." +
                    std::to_string(most),
                false);

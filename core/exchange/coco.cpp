@@ -45,7 +45,8 @@ void write_annotation(const RunProducts& run, const Truth& t, const ImageLabel& 
   json.end_array().end_array().key("keypoints").begin_array();
   int labelled = 0;  // those inside the image
   for (const PixelPosition& p : {label.start, label.end}) {
-    const bool visible = is_inside(p, camera.columns, camera.rows);
+    const bool visible = p.x_px >= -0.5 && p.x_px < camera.columns - 0.5 && p.y_px >= -0.5 &&
+                         p.y_px < camera.rows - 0.5;
     labelled += visible;
     if (visible)
       json.value(p.x_px + 0.5).value(p.y_px + 0.5).value(2);

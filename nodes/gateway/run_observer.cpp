@@ -160,9 +160,11 @@ class RunObserver::Connections {
       }
     if (truth_)
       for (const auto& publisher : endpoints.publishers()) follow_truth(publisher);
+    std::uint64_t incarnation = 0;  // of the broker; a recording that is replayed has none
     for (const auto& node : status.nodes)
-      if (node.name == broker_name && !status.broker.observe.empty())
-        broker_.follow(status.broker.observe, node.incarnation, security_);
+      if (node.name == broker_name) incarnation = node.incarnation;
+    if (!endpoints.observe_endpoint().empty())
+      broker_.follow(endpoints.observe_endpoint(), incarnation, security_);
     tell_frame_endpoints(endpoints, status);
     view_.take(status, gaps_);
   }

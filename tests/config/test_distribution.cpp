@@ -111,6 +111,12 @@ TEST(Distribution, EndsAreWithinTheRange) {
   }
 }
 
+TEST(Distribution, WhatExceedsAllNumbersIsInfiniteAndNoFault) {
+  const Distribution wide(value("{normal: {mean: 0, sigma: 1e308}}"));
+  for (const auto& end : wide.ends())
+    EXPECT_NE(end.scalar.find("inf"), std::string::npos) << end.scalar;
+}
+
 TEST(Distribution, OtherMappingsAreNone) {
   for (const char* text : {"{uniform: off}", "{normal: [0, 0, 1]}", "{mean: 2}", "3", "[1, 2]",
                            "{uniform: [1, 2], min: 3}"})
