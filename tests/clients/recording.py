@@ -139,6 +139,15 @@ def replays(path, directory):
     check(ticks == list(range(TICKS + 1)) and took_s >= 5 * TICKS / 100, f"{5 * TICKS} s at 100 times the speed take {took_s:.1f} s")
 
 
+def gateways_follow_a_replay(binary, path):
+    """A replay begins when an observer has subscribed: here the live view alone."""
+    with Run(*command("replay", path, "--speed", "max")) as playing:
+        address = playing.process.stdout.readline().strip()
+        with Run(pathlib.Path(binary).with_name("dmise-gateway"), "--master", address, "--listen", "127.0.0.1:0"):
+            code, _ = playing.finish()
+    check(code == 0, f"a gateway follows a replay: {playing.stderr.strip()}")
+
+
 def late_observers_are_caught_up(path):
     replay = dmise.Replay(path, speed=60.0)
     thread = threading.Thread(target=replay.run)
@@ -303,6 +312,7 @@ def test(binary, directory):
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, copy)
     replays(path, directory)
+    gateways_follow_a_replay(binary, path)
     late_observers_are_caught_up(path)
     replays_ignore_rubbish(path)
     gaps_are_told(path, directory)
