@@ -26,7 +26,7 @@ double radiance_w_per_m2_sr(double temperature_k, double low_m, double high_m) {
 TEST(BlackBody, RadiatesStefansLawOverAllWavelengths) {
   for (const double t : {3.0, 300.0, 5772.0})
     EXPECT_NEAR(radiance_w_per_m2_sr(t, 1e-9, 1e3) / (stefan_boltzmann * std::pow(t, 4) / pi), 1.0,
-                1e-6)
+                t < 10 ? 1e-6 : 1e-9)
         << t;
 }
 

@@ -178,6 +178,33 @@ TEST(Blur, RegistersPointsAndStreaksAtEveryOversampling) {
     }
 }
 
+// Closed form of widths: the pixel's own variance, 1/12, and, where a pixel's value is that between
+// its two middle cells (an even number of them), that of two places 1/k apart.
+TEST(Blur, BilinearResamplingWidensByTheDistanceOfTheMiddleCells) {
+  Threads one(1);
+  const auto variance = [](const ExpectedElectronImage& image) {
+    const PixelPosition mean = centroid(image);
+    double sum = 0.0, square = 0.0;
+    for (int y = 0; y < image.rows; ++y)
+      for (int x = 0; x < image.columns; ++x) {
+        sum += image.at(x, y);
+        square += image.at(x, y) * (x - mean.x_px) * (x - mean.x_px);
+      }
+    return square / sum;
+  };
+  for (int k : {1, 2, 3, 4, 8})
+    for (const bool bilinear : {false, true}) {
+      Optics o = gaussian(96, 80, 4.2, k);
+      if (bilinear) o.spread.resampling = PointSpread::Resampling::bilinear;
+      const Arc arc = point(47.81, 39.83, 1e5);
+      const double sigma_px = 4.2 / std::sqrt(8 * std::log(2));
+      const double expected =
+          sigma_px * sigma_px + 1.0 / 12 + (bilinear && k % 2 == 0 ? 1.0 / (4 * k * k) : 0.0);
+      EXPECT_NEAR(variance(by_transform(o, {&arc, 1}, one)), expected, 2e-3) << k << bilinear;
+      EXPECT_NEAR(variance(directly(o, {&arc, 1}, one)), expected, 2e-3) << k << bilinear;
+    }
+}
+
 TEST(Blur, RegistersTheDirectionsOfEveryProjectionOnBothPaths) {
   Threads one(1);
   for (Projection projection : {Projection::gnomonic, Projection::equidistant,
