@@ -105,6 +105,10 @@ const Form* YamlValue::form(Form::Kind kind) const {
   section_lacks("a form that is read of " + path_);
 }
 
+bool YamlValue::is_like_number() const {
+  return is_scalar() && text().find_first_not_of("+-.0123456789") == std::string::npos;
+}
+
 double YamlValue::number() const {
   const Form* is = form(Form::Kind::number);
   return number(is ? is->bounds : Bounds{});

@@ -27,6 +27,8 @@ class YamlValue {
   bool is_map() const { return node_.IsMap(); }
   bool is_list() const { return node_.IsSequence(); }
   bool is_scalar() const { return node_.IsScalar(); }
+  /// Whether it is a scalar of digits, signs and points, which are meant as a number.
+  bool is_like_number() const;
   const std::string& file() const { return *file_; }
   const std::string& path() const { return path_; }
   std::string where() const;  // file:line:column
