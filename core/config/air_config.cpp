@@ -1,7 +1,5 @@
 #include "core/config/air_config.h"
 
-#include <limits>
-
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
@@ -11,8 +9,6 @@
 
 namespace dmise {
 namespace {
-
-constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
 
 Forms share() { return form::number(0.0, 1.0); }
 
@@ -47,7 +43,7 @@ const Section& clouds_section() {
        optional("wind_east_m_per_s", form::number(-200.0, 200.0), "Wind towards east [m/s].", "8"),
        optional("wind_north_m_per_s", form::number(-200.0, 200.0), "Wind towards north [m/s].",
                 "0"),
-       optional("seed", form::integer(0, most_seed), "Seed of the pattern.", "1")}};
+       optional("seed", form::seed(), "Seed of the pattern.", "1")}};
   return section;
 }
 

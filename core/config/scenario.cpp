@@ -24,8 +24,6 @@
 namespace dmise {
 namespace {
 
-constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
-
 const Section& simulation_section() {
   static const Section section{
       "simulation", "When the run begins, how long it lasts and in which steps.",
@@ -35,7 +33,7 @@ const Section& simulation_section() {
                     "Length of the run [s], a whole number of ticks."),
            required("tick_s", form::number(1e-6, 3600.0),
                     "Time between ticks [s], at which the state of the world is published."),
-           optional("seed", form::integer(0, most_seed), "Seed of all random numbers.", "1"),
+           optional("seed", form::seed(), "Seed of all random numbers.", "1"),
            optional(
                "interpolation", form::choice({"3", "5", "7"}),
                "Order of the polynomials that join objects between ticks. By default the lowest "

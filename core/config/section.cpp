@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace dmise {
@@ -32,6 +33,7 @@ Forms not_negative() { return {{.kind = Kind::number, .bounds = {.least = 0.0}}}
 Forms integer(std::int64_t least, std::int64_t most) {
   return {{.kind = Kind::integer, .least = least, .most = most}};
 }
+Forms seed() { return integer(0, std::numeric_limits<std::int64_t>::max()); }
 Forms text(std::vector<std::string> suggested) {
   return {{.kind = Kind::text, .words = std::move(suggested)}};
 }

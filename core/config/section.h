@@ -69,6 +69,7 @@ Forms above(double least, double most);  // `least` itself is refused
 Forms positive();
 Forms not_negative();
 Forms integer(std::int64_t least, std::int64_t most);
+Forms seed();  // of random numbers: 0 to 2^63 - 1
 Forms text(std::vector<std::string> suggested = {});
 Forms time();  // UTC
 Forms flag();

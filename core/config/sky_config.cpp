@@ -10,8 +10,6 @@
 namespace dmise {
 namespace {
 
-constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
-
 Forms brightness() { return form::number(-10.0, 30.0); }
 Forms share() { return form::number(0.0, 1.0); }
 Forms sky_names() { return form::choice({"urban", "suburban", "dark", "space"}); }
