@@ -136,17 +136,18 @@ Outcome<BatchFit> fit_orbit(const ForceModel& forces,
   OrbitState state = start;
   LinearisedArc linear;
   Normal normal;
+  std::vector<std::vector<bool>> fitted;  // sets, so that fits do not go round
   for (;;) {
     const auto reason =
         descend(problem, settings, fit.taken, state, linear, normal, fit.iterations);
     if (!reason.empty()) return Result::refused(reason);
     if (!(settings.reject_sigma > 0)) break;
+    fitted.push_back(fit.taken);
     std::vector<bool> kept(observations.size());
     for (std::size_t i = 0; i < kept.size(); ++i)
       kept[i] = linear.sigmas[i] <= settings.reject_sigma;
-    if (kept == fit.taken || !enough(kept)) break;
+    if (std::find(fitted.begin(), fitted.end(), kept) != fitted.end() || !enough(kept)) break;
     fit.taken = kept;
-    if (fit.iterations >= settings.most_iterations) break;
   }
   const int n = problem.unknowns();
   const OrbitMatrix root = normal.scale.cwiseInverse().asDiagonal() * normal.inverse;

@@ -69,6 +69,37 @@ TEST(Batch, OutliersAreLeftOut) {
   for (const std::size_t i : {5u, 17u, 40u}) EXPECT_FALSE(robust->taken[i]);
 }
 
+// However many iterations are left when observations have been rejected, an estimate is of those
+// that are taken, its covariance too.
+TEST(Batch, EstimatesAreOfTheObservationsThatAreTaken) {
+  const ForceModel forces(ForceSettings{});
+  TrackingTrial trial = tracking_trial(forces, {}, 4);
+  for (const std::size_t i : {5u, 17u, 40u}) {
+    AngleObservation& outlier = trial.observations[i];
+    const SkyTangents tangents = sky_tangents(outlier.direction);
+    outlier.direction = unit(outlier.direction + 300 * arcsec * tangents.north);
+  }
+  int estimates = 0, refused = 0;
+  for (int most_iterations = 1; most_iterations <= 12; ++most_iterations) {
+    const auto fit = fit_orbit(forces, trial.observations, displaced(trial.truth, 20e3, 30),
+                               {.reject_sigma = 6, .most_iterations = most_iterations});
+    if (!fit) {
+      ++refused;
+      continue;
+    }
+    ++estimates;
+    std::vector<AngleObservation> taken;
+    for (std::size_t i = 0; i < fit->taken.size(); ++i)
+      if (fit->taken[i]) taken.push_back(trial.observations[i]);
+    const auto alone = fit_orbit(forces, taken, fit->estimate.state);
+    ASSERT_TRUE(alone) << alone.reason;
+    const auto &a = fit->estimate.covariance, &b = alone->estimate.covariance;
+    EXPECT_LT((a - b).norm(), 1e-3 * b.norm()) << most_iterations;
+  }
+  EXPECT_GT(estimates, 0);
+  EXPECT_GT(refused, 0);
+}
+
 // Drag of a low object over three passes of a day.
 TEST(Batch, EstimatesDrag) {
   const ForceModel forces(ForceSettings{});
