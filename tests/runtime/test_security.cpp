@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -65,6 +66,14 @@ TEST(Keys, AreReadableByTheirOwnerAlone) {
   EXPECT_THROW(read_key(keys.directory, "a"), ConfigError);
   EXPECT_THROW(read_key(keys.directory, "b"), ConfigError);
   EXPECT_THROW(make_key(keys.directory, "../b", false), ConfigError);
+}
+
+TEST(Keys, AreMadeInPairsOrNotAtAll) {
+  const Keys keys({"a"});
+  const std::string secret = keys.directory + "/a.key";
+  ASSERT_EQ(unlink(secret.c_str()), 0);
+  EXPECT_THROW(make_key(keys.directory, "a", false), ConfigError);  // of a key that is lost
+  EXPECT_NE(access(secret.c_str(), F_OK), 0);
 }
 
 TEST(Keys, InARingCountAsFilesOfTheirOwn) {

@@ -40,7 +40,9 @@ void write_new(const std::string& path, mode_t mode, const std::string& text) {
                        fsync(file) == 0;
   const int reason = errno;
   if (file >= 0) close(file);
-  if (!written) throw Error(path + ": can't be written: " + std::strerror(reason));
+  if (written) return;
+  if (file >= 0) unlink(path.c_str());
+  throw Error(path + ": can't be written: " + std::strerror(reason));
 }
 
 bool is_key(const std::string& text) {
@@ -170,9 +172,15 @@ void make_key(const std::string& directory, const std::string& name, bool truth,
   char public_key[key_characters + 1], secret_key[key_characters + 1];
   if (zmq_curve_keypair(public_key, secret_key) != 0)
     throw Error("this build of ZeroMQ has no CURVE");
-  write_new(path_of(directory, name, ".key"), 0600, text_of(KeyPair{public_key, secret_key}));
-  write_new(path_of(directory, name, ".pub"), 0644,
-            text_of(AllowedKey{name, public_key, truth, nodes}));
+  const std::string secret = path_of(directory, name, ".key");
+  write_new(secret, 0600, text_of(KeyPair{public_key, secret_key}));
+  try {
+    write_new(path_of(directory, name, ".pub"), 0644,
+              text_of(AllowedKey{name, public_key, truth, nodes}));
+  } catch (const Error&) {
+    unlink(secret.c_str());
+    throw;
+  }
 }
 
 void make_rings(const std::string& directory,
