@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/frames/earth_orientation.h"
 #include "core/frames/rotation_angle.h"
 
 namespace dmise {
 namespace {
 
-constexpr double earth_rate_rad_per_s = 7.2921e-5;
 constexpr double margin = 1.25;  // a camera may turn unevenly
 
 /// Returns by how much the camera turns a second, against the ground or, in orbit, the stars.
@@ -37,7 +37,7 @@ void add_error_facts(const View& view, PlanFacts& f) {
   f.clock_error_s = std::max(std::abs((truly.start - told.start).seconds()),
                              std::abs((truly.end - told.end).seconds()));
   f.star_rate_rad_per_s =
-      camera_rate_rad_per_s(view) + (view.on_ground() ? earth_rate_rad_per_s : 0.0);
+      camera_rate_rad_per_s(view) + (view.on_ground() ? earth_turn_rad_per_s : 0.0);
 }
 
 }  // namespace dmise

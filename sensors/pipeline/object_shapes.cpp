@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/facets/earthshine.h"
 #include "core/facets/moonlight.h"
+#include "core/frames/rotation_angle.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/moon_disc.h"
@@ -121,18 +122,6 @@ double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {
   return light > 0.0 ? std::min(darkest_mag, sun_v_mag + magnitude_of_light(light)) : darkest_mag;
 }
 
-namespace {
-
-template <class F>
-double turn_between_rad(const Rotation<Gcrs, F>& a, const Rotation<Gcrs, F>& b) {
-  double trace = 0.0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) trace += a.m[i][j] * b.m[i][j];
-  return std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0));
-}
-
-}  // namespace
-
 double turn_rad(const View& view, std::size_t object) {
   const auto& exposure = view.times();
   const double step = std::min(1.0, 0.01 / exposure.seconds());  // of the exposure: 10 ms at most
@@ -140,14 +129,14 @@ double turn_rad(const View& view, std::size_t object) {
   const auto a = view.world().gcrs_from_body(object, before);
   const auto b = view.world().gcrs_from_body(object, exposure.end);
   if (!a || !b) return 0.0;
-  double turn = turn_between_rad(*a, *b);
+  double turn = rotation_angle_rad(*a * b->inverse());
   if (const auto& panel = view.world().roster().objects[object].panel) {
     const auto gcrs_from_panel = [&](const Rotation<Gcrs, Body>& gcrs_from_body, SimTime t) {
       const Vec<Gcrs> to_sun = view.environment().sun_m - view.world().motion(object, t).position_m;
       return gcrs_from_body * body_from_panel(*panel, gcrs_from_body.inverse() * to_sun);
     };
-    turn = std::max(
-        turn, turn_between_rad(gcrs_from_panel(*a, before), gcrs_from_panel(*b, exposure.end)));
+    turn = std::max(turn, rotation_angle_rad(gcrs_from_panel(*a, before) *
+                                             gcrs_from_panel(*b, exposure.end).inverse()));
   }
   return turn / step;
 }
