@@ -28,7 +28,7 @@ inline constexpr double label_margin_fwhm = 1.5;
 std::optional<ImageLabel> label_of(const Truth& truth, const RunProducts& run);
 std::optional<ImageLabel> label_of(const Detection& detection, const RunProducts& run);
 
-/// Corners of the band around the trail, clipped to an image of this size; at least three.
+/// Corners of the band around the trail, clipped to an image of this size; none outside it.
 std::vector<PixelPosition> outline_of(const ImageLabel& label, int columns, int rows);
 
 /// Area of a polygon [px^2].

@@ -54,6 +54,21 @@ TEST(ImageLabel, EndsAtTheImagesEdge) {
   EXPECT_NEAR(area_px2(outline_of(*label, 200, 100)), (20.5 + margin_px) * 2 * margin_px, 1e-9);
 }
 
+// 45 deg: the band's corners at the left edge lie 3 sqrt(2) px above and below the trail.
+TEST(ImageLabel, BoxOfATrailThatLeavesOnADiagonalEndsWithItsBandInTheImage) {
+  const auto label = label_of(truth({-60.5, -10}, {39.5, 90}), run());
+  ASSERT_TRUE(label);
+  EXPECT_DOUBLE_EQ(label->box.left_px, -0.5);
+  EXPECT_NEAR(label->box.top_px, 50 - margin_px * std::sqrt(2.0), 1e-9);
+  EXPECT_DOUBLE_EQ(label->box.right_px, 39.5 + margin_px);
+  EXPECT_DOUBLE_EQ(label->box.bottom_px, 90 + margin_px);
+}
+
+// The box of the whole trail covers the image's corner, the band does not.
+TEST(ImageLabel, IsNoneForATrailThatPassesTheCorner) {
+  EXPECT_FALSE(label_of(truth({-40, 20}, {20, -40}), run()));
+}
+
 TEST(ImageLabel, IsNoneOutsideTheImageAndWithoutLight) {
   EXPECT_FALSE(label_of(truth({-20, 50}, {-10, 50}), run()));
   Truth dark = truth({20, 30}, {60, 50});
