@@ -29,7 +29,8 @@ DRAWN = {"close-up": ("near-eye", None, None), "three-sites": ("atlanta", 15, (5
 
 
 def names():
-    return sorted(str(path.relative_to(SCENARIOS).with_suffix("")) for path in SCENARIOS.rglob("*.yaml"))
+    return sorted(str(path.relative_to(SCENARIOS).with_suffix("")) for path in SCENARIOS.rglob("*.yaml")
+                  if re.search("^simulation:", path.read_text(), re.M))  # else a file that scenarios name
 
 
 def words(name):
