@@ -27,6 +27,8 @@ std::optional<Utc> time_in(const YamlValue& value) {
   if (!value.is_scalar()) return std::nullopt;
   try {
     return parse_utc(value.node().Scalar());
+  } catch (const BeforeLeapSeconds&) {
+    return value.time();  // throws, with place and reason
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -125,8 +127,12 @@ Distribution::Value Distribution::at(double share) const {
               .what = {}};
     case Kind::integers:
       return {.scalar = scalar(std::min(least_ + std::floor(share * (most_ - least_ + 1)), most_))};
-    case Kind::log_uniform:
-      return {.scalar = scalar(std::exp(std::log(least_) + share * std::log(most_ / least_)))};
+    case Kind::log_uniform: {
+      const double ratio = most_ / least_;  // may exceed all numbers
+      const double width =
+          std::isfinite(ratio) ? std::log(ratio) : std::log(most_) - std::log(least_);
+      return {.scalar = scalar(std::exp(std::log(least_) + share * width))};
+    }
     case Kind::normal:  // drawn otherwise: only the middle
       return {.scalar = scalar(std::clamp(mean_, least_, most_))};
     case Kind::uniform:
@@ -181,23 +187,21 @@ bool has_distribution(const YAML::Node& node) {
          std::any_of(node.begin(), node.end(), [](const auto& n) { return has_distribution(n); });
 }
 
-void refuse_within(const YamlValue& value) {
+void refuse_within(const YamlValue& value, const std::string& reason) {
   if (Distribution::is(value.node()))
-    value.fail("is a distribution (" + YamlMap(value).keys().front() +
-                   "): dmise dataset draws a value for each seed",
-               false);
+    value.fail("is a distribution (" + YamlMap(value).keys().front() + "): " + reason, false);
   if (value.is_map()) {
     YamlMap map(value);
-    for (const auto& key : map.keys()) refuse_within(map.require(key));
+    for (const auto& key : map.keys()) refuse_within(map.require(key), reason);
   } else if (value.is_list()) {
-    for (const auto& item : value.list()) refuse_within(item);
+    for (const auto& item : value.list()) refuse_within(item, reason);
   }
 }
 
 }  // namespace
 
-void refuse_distributions(const YamlValue& root) {
-  if (has_distribution(root.node())) refuse_within(root);
+void refuse_distributions(const YamlValue& root, const std::string& reason) {
+  if (has_distribution(root.node())) refuse_within(root, reason);
 }
 
 }  // namespace dmise

@@ -53,7 +53,8 @@ class Distribution {
   std::size_t count_ = 0;  // of choices
 };
 
-/// Throws `ConfigError` with the place of the first distribution in a file, if there is one.
-void refuse_distributions(const YamlValue& root);
+/// Throws `ConfigError` with the place of the first distribution in a file, if there is one, and
+/// the reason.
+void refuse_distributions(const YamlValue& root, const std::string& reason);
 
 }  // namespace dmise

@@ -242,7 +242,7 @@ const Section& scenario_section() {
 
 Scenario load_scenario(const std::string& path) {
   const YamlValue root = YamlValue::load(path);
-  refuse_distributions(root);
+  refuse_distributions(root, "dmise dataset draws a value for each seed");
   return read_scenario(root);
 }
 

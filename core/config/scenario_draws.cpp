@@ -67,7 +67,8 @@ YamlValue ScenarioDraws::resolved(const Choose& choose, std::vector<DrawnValue>*
     if (value.is_scalar())
       drawn->push_back({value.path(), value.node().Scalar(), is_number(value)});
     else
-      drawn->push_back({value.path() + ".one_of", std::to_string(taken.choice), true});
+      drawn->push_back({value.path() + ".one_of" + key.substr(value.path().size()),
+                        std::to_string(taken.choice), true});
   });
   return tree;
 }
@@ -101,9 +102,10 @@ void ScenarioDraws::check_with(const std::vector<Fixed>& fixed, std::set<std::st
   try {
     read_scenario(tree);
   } catch (const ConfigError& e) {
-    throw ConfigError(std::string(e.what()) + (fixed.empty()
-                                                   ? " (each distribution in its middle)"
-                                                   : " (" + fixed.back().value.what + ")"));
+    const std::string which = !fixed.empty() ? " (" + fixed.back().value.what + ")"
+                              : met.empty()  ? ""
+                                             : " (each distribution in its middle)";
+    throw ConfigError(e.what() + which);
   }
   for (const auto& [key, distribution] : met)
     for (const auto& end : distribution.ends()) {

@@ -12,7 +12,9 @@ namespace dmise {
 
 /// A value that was drawn for one seed.
 struct DrawnValue {
-  std::string path;  // "sensors[0].exposure_s"; with ".one_of" for the number of a choice, from 0
+  // "sensors[0].exposure_s"; with ".one_of" for the number of a choice, from 0; of a choice within
+  // that choice with ".one_of/1".
+  std::string path;
   std::string text;
   bool is_number = false;
 };

@@ -10,6 +10,7 @@
 #include "core/base/printable.h"
 #include "core/base/text_fields.h"
 #include "core/base/text_file.h"
+#include "core/config/distribution.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_limits.h"
 #include "core/time/iso8601.h"
@@ -220,7 +221,11 @@ std::vector<double> YamlValue::numbers() const {
 
 YamlValue load_preset(const std::string& kind, const YamlValue& value) {
   const std::string name = value.text(), path = find_preset(kind + "s", name, value.file());
-  if (!path.empty()) return YamlValue::load(path);
+  if (!path.empty()) {
+    const YamlValue preset = YamlValue::load(path);
+    refuse_distributions(preset, "presets hold none, only the scenario itself does");
+    return preset;
+  }
   const auto names = preset_names(kind + "s");
   value.fail("no such " + kind + did_you_mean(name, names) + " (a path to a YAML file, or one of " +
              joined(names) + ")");

@@ -60,7 +60,10 @@ class YamlValue {
   /// Replaces the value wherever it stands, also by aliases. Its place in the file stays.
   void become(const std::string& scalar) { node_ = scalar; }
   /// Replaces the value by another of the same file, with the place of that.
-  void become(const YamlValue& other) { node_ = other.node_; }
+  void become(const YamlValue& other) {
+    YAML::Node copy = node_;  // the one that is assigned to no longer refers to the tree
+    copy = other.node_;
+  }
   const YAML::Node& node() const { return node_; }
 
   [[noreturn]] void fail(const std::string& reason, bool show_value = true) const;
@@ -84,7 +87,7 @@ class YamlValue {
 };
 
 /// Reads the file that `value` names, or the preset of this name among launch/KINDs ("camera",
-/// "site"). Throws `ConfigError` that names the presets.
+/// "site"). Throws `ConfigError` that names the presets, and for a distribution in one.
 YamlValue load_preset(const std::string& kind, const YamlValue& value);
 
 /// The keys of a YAML mapping. Each model reads its own; `done()` refuses keys that were not read

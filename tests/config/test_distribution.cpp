@@ -111,6 +111,15 @@ TEST(Distribution, EndsAreWithinTheRange) {
   }
 }
 
+TEST(Distribution, EndsOfALogarithmMayBeFurtherApartThanANumberCanSay) {
+  EXPECT_LT(ks_distance(draws("{log_uniform: [1e-306, 1000]}", many),
+                        [](double x) { return (std::log10(x) + 306) / 309; }),
+            at_one_percent);
+  EXPECT_NEAR(
+      std::log10(std::stod(Distribution(value("{log_uniform: [1e-306, 1000]}")).middle().scalar)),
+      -151.5, 1e-9);
+}
+
 TEST(Distribution, WhatExceedsAllNumbersIsInfiniteAndNoFault) {
   const Distribution wide(value("{normal: {mean: 0, sigma: 1e308}}"));
   for (const auto& end : wide.ends())
@@ -133,6 +142,10 @@ TEST(Distribution, WhatCannotBeIsNamed) {
       {"{uniform: [2018-01-02T00:00:00Z, 2018-01-01T00:00:00Z]}", "must be > 2018-01-02"},
       {"{uniform: [2018-02-30T00:00:00Z, 2018-03-01T00:00:00Z]}",
        "x.uniform[0]: must be a UTC time such as"},
+      {"{uniform: [1960-01-21T10:00:00Z, 2018-01-21T10:00:00Z]}",
+       "s.yaml:1:15: x.uniform[0]: must not be before 1972, when UTC was not yet whole seconds "
+       "from "
+       "TAI, got 1960-01-21T10:00:00Z"},
       {"{uniform: [1972-01-02T00:00:00Z, 9999-01-01T00:00:00Z]}",
        "s.yaml:1:37: x.uniform[1]: 9999-01-01T00:00:00Z: is more than 292 years from 1972-01-02"},
       {"{uniform: [2018-01-02T00:00:00Z, 5]}", "x.uniform[1]: must be a UTC time such as"},

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include "core/base/error.h"
 
@@ -99,6 +101,53 @@ TEST_F(ScenarioDrawsTest, AChoiceMayBeAMappingWithDrawsOfItsOwn) {
   }
   EXPECT_GT(sky, 5);
   EXPECT_LT(sky, 35);
+}
+
+TEST_F(ScenarioDrawsTest, AChoiceMayBeAChoice) {
+  const auto choices =
+      draws(good, "{log_uniform: [1, 20]}", "{one_of: [3, {one_of: [4, {one_of: [5, 6]}]}]}");
+  EXPECT_EQ(complaint([&] { choices.check_ends(); }), "");
+  std::set<double> taken;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const DrawnScenario sample = choices.draw(seed);
+    const SensorConfig& sensor = sample.scenario.sensors[0];
+    taken.insert(sensor.exposure_s);
+    EXPECT_EQ(sensor.exposure_s, sensor.first_exposure_s);
+    for (const DrawnValue& value : sample.drawn)
+      if (value.path == "sensors[0].exposure_s") {
+        EXPECT_EQ(std::stod(value.text), sensor.exposure_s);
+      }
+  }
+  EXPECT_EQ(taken, (std::set<double>{3, 4, 5, 6}));
+}
+
+TEST_F(ScenarioDrawsTest, EachOfNestedChoicesIsNamed) {
+  const auto choices =
+      draws(good, "{azimuth_deg: {uniform: [0, 360]}, elevation_deg: 60}",
+            "{one_of: [{one_of: [{ra_deg: 1, dec_deg: 5}, {ra_deg: 2, dec_deg: 5}]}]}");
+  EXPECT_EQ(complaint([&] { choices.check_ends(); }), "");
+  const DrawnScenario sample = choices.draw(1);
+  std::map<std::string, std::string> drawn;
+  for (const auto& value : sample.drawn) EXPECT_TRUE(drawn.emplace(value.path, value.text).second);
+  EXPECT_EQ(drawn["sensors[0].pointing.one_of"], "0");
+  EXPECT_EQ(std::stod(drawn["sensors[0].pointing.one_of/1"]) + 1,
+            std::get<PointSky>(sample.scenario.sensors[0].pointing).ra_deg);
+}
+
+TEST_F(ScenarioDrawsTest, PresetsHoldNone) {
+  const std::string preset = path + ".camera.yaml";
+  std::ofstream(preset) << "detector: {bias_dn: {integers: [1, 9]}}\n";
+  for (const std::string latitude : {"{uniform: [30, 34]}", "31"}) {
+    std::string text = good;
+    text.replace(text.find("{one_of: [omnissa, raven]}"), 26, preset);
+    const std::string message =
+        complaint([&] { draws(text, "{uniform: [30, 34]}", latitude).check_ends(); });
+    EXPECT_NE(message.find("camera.yaml:1:21: detector.bias_dn: is a distribution (integers): "
+                           "presets hold none, only the scenario itself does"),
+              std::string::npos)
+        << message;
+  }
+  std::remove(preset.c_str());
 }
 
 TEST_F(ScenarioDrawsTest, ARunRefusesDistributions) {
