@@ -21,7 +21,11 @@ def numbers_of(values: Any) -> records.Floats:
 
 def start_of(start_utc: str) -> datetime.datetime | None:
     """The start of a run as time-masters and run.json tell it (ISO 8601); None if they do not."""
-    return datetime.datetime.fromisoformat(start_utc.replace("Z", "+00:00")) if start_utc else None
+    if not start_utc:
+        return None
+    leap = ":60" in start_utc
+    start = datetime.datetime.fromisoformat(start_utc.replace("Z", "+00:00").replace(":60", ":59"))
+    return start.replace(fold=int(leap))
 
 
 @functools.cache

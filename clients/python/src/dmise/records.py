@@ -13,6 +13,8 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from .leap_seconds import utc_after
+
 ArrayLike = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
 Instant = Literal["start", "middle", "end"]
@@ -30,10 +32,10 @@ class Record:
     start_utc_of_run: datetime.datetime | None = None
 
     def utc(self, time_ns: int) -> datetime.datetime:
-        """A time of this record as UTC, to the microsecond before; wrong by a leap second within the run."""
+        """A time of this record as UTC, to the microsecond before; a leap second is the second 59 with fold = 1."""
         if self.start_utc_of_run is None:
             raise ValueError("the run does not tell when it starts")
-        return self.start_utc_of_run + datetime.timedelta(microseconds=time_ns // 1000)
+        return utc_after(self.start_utc_of_run, time_ns // 1000)
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and all(
