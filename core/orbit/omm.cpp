@@ -1,5 +1,9 @@
 #include "core/orbit/omm.h"
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+
 #include "core/base/text_fields.h"
 #include "core/orbit/epoch.h"
 
@@ -7,14 +11,48 @@ namespace dmise {
 
 namespace {
 
-std::string_view required(const OmmFields& omm, std::string_view key) {
-  const std::string_view text = omm.get(key);
-  if (text.empty()) throw RecordError("no " + std::string(key));
+/// Units in which SGP4's elements are published (CCSDS 502.0-B, table 4-3), each first as the
+/// standard writes it, in capitals without blanks.
+using Units = std::array<std::string_view, 4>;
+struct UnitsOfKey {
+  std::string_view key;
+  Units units;
+};
+constexpr Units degrees = {"DEG", "DEGREE", "DEGREES"};
+constexpr UnitsOfKey standard_units[] = {
+    {"MEAN_MOTION", {"REV/DAY", "REVS/DAY", "REV/D"}},
+    {"ECCENTRICITY", {"N/A", "-", "1"}},
+    {"INCLINATION", degrees},
+    {"RA_OF_ASC_NODE", degrees},
+    {"ARG_OF_PERICENTER", degrees},
+    {"MEAN_ANOMALY", degrees},
+    {"BSTAR", {"1/ER", "ER**-1", "1/EARTHRADII", "1/[EARTHRADII]"}},
+    {"MEAN_MOTION_DOT", {"REV/DAY**2", "REVS/DAY**2", "REV/D**2", "REV/DAY2"}},
+    {"MEAN_MOTION_DDOT", {"REV/DAY**3", "REVS/DAY**3", "REV/D**3", "REV/DAY3"}}};
+
+/// A unit in capitals without blanks, with powers as CCSDS writes them.
+std::string plain_unit(std::string_view unit) {
+  std::string text;
+  for (const char c : upper_case(unit))
+    if (c == '^')
+      text += "**";
+    else if (c != ' ' && c != '\t')
+      text += c;
   return text;
 }
 
+/// Throws if the unit of a key is not the one that its number is read in.
+void check_unit(std::string_view key, std::string_view unit) {
+  const std::string plain = plain_unit(unit);
+  const auto* known = std::ranges::find(standard_units, key, &UnitsOfKey::key);
+  if (plain.empty() || known == std::end(standard_units)) return;
+  if (std::ranges::find(known->units, plain) == known->units.end())
+    throw RecordError("the unit of " + std::string(key) + " is not " +
+                      std::string(known->units[0]) + got(unit));
+}
+
 double required_in(const OmmFields& omm, const char* key, double low, double high) {
-  return real_in(required(omm, key), key, low, high);
+  return real_in(omm.required(key), key, low, high);
 }
 
 double optional_in(const OmmFields& omm, const char* key, double low, double high) {
@@ -41,10 +79,31 @@ std::string tle_designator(std::string_view id) {
 
 }  // namespace
 
+const OmmFields::Field* OmmFields::find(std::string_view key) const {
+  const Field* found = nullptr;
+  for (const Field& field : fields_) {
+    if (field.key != key) continue;
+    if (found) throw RecordError(std::string(key) + " is there twice" + got(field.value));
+    found = &field;
+  }
+  return found;
+}
+
 std::string_view OmmFields::get(std::string_view key) const {
-  for (const auto& [name, value] : fields_)
-    if (name == key) return trimmed(value);
-  return {};
+  const Field* field = find(key);
+  if (!field) return {};
+  if (!field->other.empty() && field->other != "null")
+    throw RecordError(std::string(key) + " is " + field->other + ", not a value");
+  check_unit(key, field->unit);
+  return trimmed(field->value);
+}
+
+std::string_view OmmFields::required(std::string_view key) const {
+  const std::string_view text = get(key);
+  if (!text.empty()) return text;
+  const Field* field = find(key);
+  throw RecordError(field && !field->other.empty() ? std::string(key) + " is " + field->other
+                                                   : "no " + std::string(key));
 }
 
 MeanElements elements_of(const OmmFields& omm) {
@@ -56,14 +115,14 @@ MeanElements elements_of(const OmmFields& omm) {
     throw RecordError("MEAN_ELEMENT_THEORY is not SGP4" + got(theory));
 
   MeanElements e;
-  const std::string_view number = required(omm, "NORAD_CAT_ID");
+  const std::string_view number = omm.required("NORAD_CAT_ID");
   const auto catalogue_number = parse_count(number);
   if (!catalogue_number || *catalogue_number > 999'999'999)
     throw RecordError("NORAD_CAT_ID is not a number of up to 9 digits" + got(number));
   e.catalogue_number = *catalogue_number;
   e.name = omm.get("OBJECT_NAME");
   e.designator = tle_designator(omm.get("OBJECT_ID"));
-  const auto epoch = parse_iso_epoch(required(omm, "EPOCH"));
+  const auto epoch = parse_iso_epoch(omm.required("EPOCH"));
   if (!epoch) throw RecordError("EPOCH is not a UTC time" + got(omm.get("EPOCH")));
   e.epoch_jd1 = epoch->jd1;
   e.epoch_jd2 = epoch->jd2;

@@ -1,7 +1,6 @@
 #pragma once
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/orbit/catalogue.h"
@@ -12,14 +11,28 @@ namespace dmise {
 /// One Orbit Mean-elements Message (CCSDS 502.0-B) as keys and texts, independent of notation.
 class OmmFields {
  public:
-  void set(std::string_view key, std::string_view value) { fields_.emplace_back(key, value); }
-  /// Trimmed text of a key; empty if missing.
+  /// `unit`: as the message states it; empty if it does not.
+  void set(std::string_view key, std::string_view value, std::string_view unit = {}) {
+    fields_.push_back({std::string(key), std::string(value), std::string(unit), {}});
+  }
+  /// Sets a key to what is neither a text nor a number: "null", "an array" or "an object".
+  void set_other(std::string_view key, std::string_view what) {
+    fields_.push_back({std::string(key), {}, {}, std::string(what)});
+  }
+  /// Trimmed text of a key; empty if missing or null. Throws `RecordError` if the key is there
+  /// twice, is an array or an object, or has another unit than the standard's.
   std::string_view get(std::string_view key) const;
+  /// The same. Throws `RecordError` also if there is no text.
+  std::string_view required(std::string_view key) const;
   bool empty() const { return fields_.empty(); }
   void clear() { fields_.clear(); }
 
  private:
-  std::vector<std::pair<std::string, std::string>> fields_;
+  struct Field {
+    std::string key, value, unit, other;
+  };
+  const Field* find(std::string_view key) const;
+  std::vector<Field> fields_;
 };
 
 /// Elements of a message whose theory is SGP4 (centre Earth, frame TEME and time UTC if stated).

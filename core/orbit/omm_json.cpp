@@ -37,7 +37,10 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
  public:
   MessageHandler(CatalogueFile& file, const int& line) : file_(file), line_(line) {}
 
-  bool null() override { return true; }
+  bool null() override {
+    other("null");
+    return true;
+  }
   bool boolean(bool flag) override { return scalar(flag ? "true" : "false"); }
   bool number_integer(number_integer_t n) override { return scalar(std::to_string(n)); }
   bool number_unsigned(number_unsigned_t n) override { return scalar(std::to_string(n)); }
@@ -53,6 +56,8 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
       message_depth_ = depth_ + 1;
       first_line_ = line_;
       omm_.clear();
+    } else {
+      other("an object");
     }
     ++depth_;
     return true;
@@ -68,6 +73,7 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   bool start_array(std::size_t) override {
     if (message_depth_ == 0 && depth_ == 1)
       file_.refused.push_back({line_, "expected a message, got an array"});
+    other("an array");
     ++depth_;
     return true;
   }
@@ -81,6 +87,10 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
+  /// What stands at a key of the message and is no scalar.
+  void other(const char* what) {
+    if (depth_ == message_depth_ && depth_ > 0) omm_.set_other(key_, what);
+  }
   bool scalar(const std::string& text) {
     if (depth_ == message_depth_ && depth_ > 0) omm_.set(key_, text);
     if (message_depth_ == 0 && depth_ <= 1)

@@ -47,10 +47,14 @@ void read_omm_kvn(std::string_view text, CatalogueFile& file) {
       finish();
       first_line = lines.line();
     }
-    const std::size_t unit = value.rfind('[');
-    if (unit != std::string_view::npos && unit > 0 && value.back() == ']' && key != "OBJECT_NAME")
-      value = trimmed(value.substr(0, unit));
-    omm.set(key, value);
+    std::string_view unit;
+    const std::size_t bracket = value.find('[');
+    if (bracket != std::string_view::npos && bracket > 0 && value.back() == ']' &&
+        key != "OBJECT_NAME") {
+      unit = value.substr(bracket + 1, value.size() - bracket - 2);
+      value = trimmed(value.substr(0, bracket));
+    }
+    omm.set(key, value, unit);
   }
   finish();
 }

@@ -34,7 +34,7 @@ struct FieldCollector : pugi::xml_tree_walker {
 
   bool for_each(pugi::xml_node& node) override {
     if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata)
-      omm.set(node.parent().name(), node.value());
+      omm.set(node.parent().name(), node.value(), node.parent().attribute("units").value());
     return true;
   }
 };

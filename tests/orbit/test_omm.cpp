@@ -155,6 +155,62 @@ TEST(Omm, WhatIsNotSgp4IsRefused) {
   EXPECT_THAT(parse_catalogue(xp, "t").refused[0].reason, HasSubstr("MEAN_ELEMENT_THEORY"));
 }
 
+/// The reason for which a text of one message is refused; empty if it is read.
+std::string refusal(const std::string& text) {
+  const CatalogueFile file = parse_catalogue(text, "t");
+  EXPECT_EQ(file.elements.size() + file.refused.size(), 1u) << text;
+  return file.refused.empty() ? "" : file.refused[0].reason;
+}
+
+// Reference: CCSDS 502.0-B-2, table 4-3; capitals and powers as real files write them.
+TEST(Omm, UnitsAreTheStandardsOrTheMessageIsRefused) {
+  const struct {
+    const char *key, *unit, *refused;
+  } cases[] = {{"INCLINATION", "deg", ""},
+               {"INCLINATION", "DEG", ""},
+               {"INCLINATION", "rad", "the unit of INCLINATION is not DEG, got \"rad\""},
+               {"MEAN_MOTION", "rev/day", ""},
+               {"MEAN_MOTION", "deg/s", "the unit of MEAN_MOTION is not REV/DAY, got \"deg/s\""},
+               {"ECCENTRICITY", "n/a", ""},
+               {"ECCENTRICITY", "%", "the unit of ECCENTRICITY is not N/A, got \"%\""},
+               {"BSTAR", "1/ER", ""},
+               {"BSTAR", "1/[Earth radii]", ""},
+               {"BSTAR", "1/m", "the unit of BSTAR is not 1/ER, got \"1/m\""},
+               {"MEAN_MOTION_DOT", "rev/day**2", ""},
+               {"MEAN_MOTION_DOT", "rev/day^2", ""},
+               {"MEAN_MOTION_DOT", "rev/day",
+                "the unit of MEAN_MOTION_DOT is not REV/DAY**2, got \"rev/day\""},
+               {"MEAN_MOTION_DDOT", "REV/DAY ** 3", ""},
+               {"ELEMENT_SET_NO", "odd", ""}};
+  for (const auto& c : cases) {
+    const std::string key = c.key, unit = c.unit;
+    std::string in_kvn = kvn(iss), in_xml = xml(iss);
+    const std::size_t at = in_kvn.find("\n" + key + " = ") + 1;
+    const std::string line = in_kvn.substr(at, in_kvn.find('\n', at) - at);
+    in_kvn.replace(at, line.size(), line.substr(0, line.find(" [")) + " [" + unit + "]");
+    in_xml.insert(in_xml.find("<" + key + ">") + key.size() + 1, " units=\"" + unit + "\"");
+    EXPECT_EQ(refusal(in_kvn), c.refused) << unit;
+    EXPECT_EQ(refusal(in_xml), c.refused) << unit;
+  }
+}
+
+TEST(Omm, WhatIsNoValueOrIsThereTwiceIsNamed) {
+  const auto with = [](const char* key, const std::string& value) {
+    std::string text = json(iss);
+    const std::string name = std::string("\"") + key + "\": ";
+    const std::size_t at = text.find(name) + name.size();
+    return text.replace(at, text.find_first_of(",}", at) - at, value);
+  };
+  EXPECT_EQ(refusal(with("MEAN_MOTION", "[15.5]")), "MEAN_MOTION is an array, not a value");
+  EXPECT_EQ(refusal(with("MEAN_MOTION", "{\"A\": 1}")), "MEAN_MOTION is an object, not a value");
+  EXPECT_EQ(refusal(with("MEAN_MOTION", "null")), "MEAN_MOTION is null");
+  EXPECT_EQ(refusal(with("MEAN_MOTION_DOT", "[1]")), "MEAN_MOTION_DOT is an array, not a value");
+  EXPECT_EQ(refusal(with("ELEMENT_SET_NO", "null")), "");
+  EXPECT_EQ(refusal(with("MEAN_MOTION", "\"15.7\",\n\"MEAN_MOTION\": \"15.8\"")),
+            "MEAN_MOTION is there twice, got \"15.8\"");
+  EXPECT_EQ(refusal(kvn(iss) + "INCLINATION = 52\n"), "INCLINATION is there twice, got \"52\"");
+}
+
 TEST(Omm, BrokenFileIsAnErrorWithItsLine) {
   for (const std::string& text :
        {"[\n" + json(iss) + ",\n{\"EPOCH\":", "<ndm>\n" + xml(iss).substr(0, 200)}) {
