@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/printable_ascii.h"
 #include "core/exchange/run_products.h"
 
 namespace dmise {
@@ -19,9 +20,9 @@ class KvnText {
     key("CREATION_DATE", run.utc({0})).key("ORIGINATOR", "DMISE");
   }
   KvnText& key(std::string_view key, std::string_view value) {
-    return line(std::string(key) + " = " + ascii(value));
+    return line(std::string(key) + " = " + printable_ascii(value));
   }
-  KvnText& comment(std::string_view text) { return line("COMMENT " + ascii(text)); }
+  KvnText& comment(std::string_view text) { return line("COMMENT " + printable_ascii(text)); }
   KvnText& line(std::string_view text) {
     text_ += text;
     text_ += '\n';
@@ -30,12 +31,6 @@ class KvnText {
   std::string take() { return std::move(text_); }
 
  private:
-  static std::string ascii(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-      if (c < ' ' || c > '~') c = '?';
-    return out;
-  }
   std::string text_;
 };
 

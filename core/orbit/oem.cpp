@@ -82,7 +82,11 @@ class OemReader {
 
   void metadata(std::string_view key, std::string_view value) {
     OemSegment& s = *segment_;
-    if (key == "OBJECT_NAME") s.object_name = value;
+    if (key == "OBJECT_NAME") {
+      s.object_name = value;
+      require_one(key, value, name_);
+    }
+    if (key == "OBJECT_ID") require_one(key, value, id_);
     if (key == "CENTER_NAME" && upper_case(value) != "EARTH")
       fail("CENTER_NAME is not EARTH", value);
     if (key == "REF_FRAME") set_frame(upper_case(value));
@@ -106,6 +110,16 @@ class OemReader {
         fail("INTERPOLATION_DEGREE is not 1 to 15", value);
       s.degree = *degree;
     }
+  }
+
+  /// All segments are of one object: a file of several is not one trajectory.
+  void require_one(std::string_view key, std::string_view value,
+                   std::optional<std::string>& first) const {
+    if (!first) first = value;
+    if (*first != value)
+      fail(std::string(key) + " is another than the first segment's, " + *first +
+               ": a trajectory is of one object",
+           value);
   }
 
   void set_frame(const std::string& frame) {
@@ -188,7 +202,7 @@ class OemReader {
   void finish_segment() {
     if (!segment_) return;
     OemSegment& s = *segment_;
-    if (s.time_s.size() < 2) fail("a segment needs at least two ephemeris lines", s.object_name);
+    if (s.time_s.empty()) fail("a segment needs an ephemeris line", s.object_name);
     s.usable_start_s = s.time_s.front();
     s.usable_stop_s = s.time_s.back();
     if (!declared_.usable_start.empty())
@@ -204,6 +218,7 @@ class OemReader {
   LineReader lines_;
   Trajectory trajectory_;
   std::optional<OemSegment> segment_;
+  std::optional<std::string> name_, id_;  // of the first segment
   Declared declared_;
   bool is_oem_ = false;
 };

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/printable_ascii.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
@@ -38,11 +39,12 @@ void OemFile::open(const char* mode) {
 }
 
 void OemFile::begin() {
-  open("w+b");
-  held_utc_.clear();
+  if (file_) std::fclose(file_);
+  file_ = nullptr;
   last_utc_.clear();
-  write("CCSDS_OEM_VERS = 2.0\nCREATION_DATE = " + subject_.creation_date +
-        "\nORIGINATOR = DMISE\n");
+  std::error_code error;
+  std::filesystem::remove(path_, error);
+  if (error) throw Error(path_ + ": can't be removed: " + error.message());
 }
 
 void OemFile::keep_before(const std::string& utc) {
@@ -50,6 +52,7 @@ void OemFile::keep_before(const std::string& utc) {
   const std::string text = read_text_file(path_);
   std::size_t keep = 0, meta = 0, stop = 0;
   std::string last;
+  bool any = false;
   for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
     const std::string line = text.substr(at, end - at);
     if (line == "META_START") {
@@ -60,13 +63,13 @@ void OemFile::keep_before(const std::string& utc) {
     const bool is_state = !line.empty() && line[0] >= '0' && line[0] <= '9';
     if (is_state && line.substr(0, utc.size()) >= utc) break;
     if (is_state) last = line.substr(0, utc.size());
+    any = any || is_state;
     keep = end + 1;
   }
-  if (keep == 0) return begin();
-  if (last.empty() && meta > 0) keep = meta;  // its last segment is empty
+  if (!any) return begin();
+  if (last.empty()) keep = meta;  // its last segment is empty
   write_file_whole(path_, text.substr(0, keep));
   open("r+b");
-  held_utc_.clear();
   last_utc_ = last;
   stop_at_ = long(stop);
   if (!last.empty()) write(last, stop_at_, SEEK_SET);
@@ -81,22 +84,20 @@ void OemFile::add(const std::string& utc, const std::string& previous_utc, const
     last_utc_ = utc;
     return;
   }
-  last_utc_.clear();
-  if (held_utc_.empty() || held_utc_ != previous_utc) {
-    held_utc_ = utc;
-    held_line_ = line;
-    return;
+  std::string text;
+  if (!file_) {
+    open("w+b");
+    text = "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = " + subject_.creation_date +
+           "\nORIGINATOR = DMISE\n";
   }
-  std::string text =
-      "META_START\nOBJECT_NAME = " + subject_.object_name + "\nOBJECT_ID = " + subject_.object_id +
-      "\nCENTER_NAME = EARTH\nREF_FRAME = GCRF\nTIME_SYSTEM = UTC\nSTART_TIME = " + held_utc_ +
-      "\n" + stop_key;
+  text += "META_START\nOBJECT_NAME = " + printable_ascii(subject_.object_name) +
+          "\nOBJECT_ID = " + printable_ascii(subject_.object_id) +
+          "\nCENTER_NAME = EARTH\nREF_FRAME = GCRF\nTIME_SYSTEM = UTC\nSTART_TIME = " + utc + "\n" +
+          stop_key;
   if (std::fseek(file_, 0, SEEK_END) != 0) fail();
   stop_at_ = std::ftell(file_) + long(text.size());
-  text += utc + "\nINTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = 7\nMETA_STOP\n";
-  write(text + held_line_ + line);
+  write(text + utc + "\nINTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = 7\nMETA_STOP\n" + line);
   last_utc_ = utc;
-  held_utc_.clear();
 }
 
 void OemFile::write(const std::string& text, long offset, int from) {

@@ -18,8 +18,8 @@ std::string oem_state_line(const std::string& utc, const Vec<Gcrs>& position_m,
                            const Vec<Gcrs>& velocity_m_per_s);
 
 /// Writes a CCSDS Orbit Ephemeris Message (502.0-B) in KVN, one state at a time, in GCRF and UTC;
-/// the file is complete, with a correct STOP_TIME, after each. A segment starts with its second
-/// state: a single state is no ephemeris and is omitted.
+/// the file is complete, with a correct STOP_TIME, after each. A state alone is a segment too;
+/// there is no file before the first. Characters of names that are not printable ASCII become ?.
 class OemFile {
  public:
   /// Does not write yet. Times are texts of one length that sort chronologically (`format_utc`).
@@ -28,7 +28,7 @@ class OemFile {
   OemFile(const OemFile&) = delete;
   OemFile& operator=(const OemFile&) = delete;
 
-  /// Starts a new file. Throws `Error` "PATH: reason", as all methods do.
+  /// Starts a new file: removes an earlier one. Throws `Error` "PATH: reason", as all methods do.
   void begin();
   /// Continues the file of an earlier process, without the states at `utc` and later.
   void keep_before(const std::string& utc);
@@ -44,10 +44,9 @@ class OemFile {
 
   std::string path_;
   OemSubject subject_;
-  std::FILE* file_ = nullptr;
-  std::string held_utc_, held_line_;  // the first state of a segment, until there is a second
-  std::string last_utc_;              // of the open segment; empty: none is open
-  long stop_at_ = 0;                  // where its STOP_TIME stands
+  std::FILE* file_ = nullptr;  // none before the first state
+  std::string last_utc_;       // of the open segment; empty: none is open
+  long stop_at_ = 0;           // where its STOP_TIME stands
 };
 
 }  // namespace dmise

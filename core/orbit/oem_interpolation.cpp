@@ -56,8 +56,9 @@ MotionState<OemAxes> interpolated(const OemSegment& s, double t_s, Velocity velo
     const Basis b = lagrange_basis(s.time_s.data() + first, count, k, t_s);
     if (!hermite) {
       state.position_m += s.position_m[i] * b.value;
-      state.velocity_m_per_s += velocity == Velocity::as_listed ? s.velocity_m_per_s[i] * b.value
-                                                                : s.position_m[i] * b.slope;
+      state.velocity_m_per_s += velocity == Velocity::as_listed || count == 1
+                                    ? s.velocity_m_per_s[i] * b.value
+                                    : s.position_m[i] * b.slope;
       continue;
     }
     const double dt_s = t_s - s.time_s[i], square = b.value * b.value;

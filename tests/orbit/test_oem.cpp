@@ -23,6 +23,11 @@ std::string meta(const std::string& frame = "GCRF", const std::string& system = 
          "EARTH\nREF_FRAME = " +
          frame + "\nTIME_SYSTEM = " + system + "\n" + more + "META_STOP\n";
 }
+/// The same of another object.
+std::string named(const std::string& name, const std::string& id) {
+  return "META_START\nOBJECT_NAME = " + name + "\nOBJECT_ID = " + id +
+         meta().substr(meta().find("\nCENTER"));
+}
 const std::string header =
     "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2026-01-01T00:00:00\nORIGINATOR = T\n";
 
@@ -128,6 +133,22 @@ TEST(Oem, SegmentsMayJump) {
   EXPECT_LE(norm(gcrs(t, 300).position_m - other.position_m), 1e-3);
 }
 
+// A state alone covers its instant, whatever its interpolation.
+TEST(Oem, ASegmentMayBeOneState) {
+  for (const char* kind : {"LINEAR", "LAGRANGE", "HERMITE"}) {
+    const Trajectory t = parse_oem(
+        header + meta("GCRF", "TAI", std::string("INTERPOLATION = ") + kind + "\n") + lines(3, 3),
+        "t");
+    const TwoBodyState truth = propagate_two_body(start, 180);
+    for (const FramedState& read : {state_at(t, at(180)), path_at(t, at(180))}) {
+      const auto& state = std::get<MotionState<Gcrs>>(read);
+      EXPECT_LE(norm(state.position_m - truth.position_m), 1e-5) << kind;
+      EXPECT_LE(norm(state.velocity_m_per_s - truth.velocity_m_per_s), 1e-8) << kind;
+    }
+    EXPECT_FALSE(covers(t, at(180.001)));
+  }
+}
+
 // The bias of EME2000's pole is (-16.6, -6.8) mas (IERS Conventions 2010, chapter 5).
 TEST(Oem, FramesAreKeptAndEme2000IsTurnedByTheFrameBias) {
   const TwoBodyState pole{{0, 0, 7e6}, {7e3, 0, 0}};
@@ -156,7 +177,13 @@ TEST(Oem, FaultsPointAtTheirLine) {
        "t:11: expected a time and 6 or 9 numbers"},
       {header + meta() + "2026-01-01T00:00:00 1 2 3 4 5 x\n", "t:11: not a number, got \"x\""},
       {header + meta() + "2026-13-01T00:00:00 1 2 3 4 5 6\n", "t:11: not a time"},
-      {header + meta() + lines(0, 0), "a segment needs at least two ephemeris lines"},
+      {header + meta(), "t:10: a segment needs an ephemeris line, got \"INSPECTOR\""},
+      {header + meta() + lines(0, 1) + named("TARGET", "2026-001A") + lines(2, 3),
+       "t:14: OBJECT_NAME is another than the first segment's, INSPECTOR: a trajectory is of one "
+       "object, got \"TARGET\""},
+      {header + meta() + lines(0, 1) + named("INSPECTOR", "2") + lines(2, 3),
+       "t:15: OBJECT_ID is another than the first segment's, 2026-001A: a trajectory is of one "
+       "object, got \"2\""},
       {header + "META_START\nREF_FRAME = GCRF\nMETA_STOP\n", "t:6: segment without TIME_SYSTEM"},
       {header + "COVARIANCE_START\nCOVARIANCE_STOP\n" + lines(0, 2),
        "t:4: COVARIANCE_START outside the ephemeris lines"},

@@ -44,7 +44,6 @@ TEST_F(OemFileTest, IsReadBackToAMicrometreAfterEveryState) {
   file.begin();
   for (int s = 0; s <= 20; ++s) {
     circle_.add(file, s);
-    if (s == 0) continue;
     const Trajectory read = read_oem(path_);
     ASSERT_EQ(read.segments.size(), 1u);
     EXPECT_EQ(read.segments[0].object_name, "ISS (ZARYA)");
@@ -56,18 +55,42 @@ TEST_F(OemFileTest, IsReadBackToAMicrometreAfterEveryState) {
   }
 }
 
-TEST_F(OemFileTest, AGapBeginsASegmentAndALoneStateIsLeftOut) {
+TEST_F(OemFileTest, AGapBeginsASegmentAndALoneStateIsOneToo) {
   OemFile file(path_, subject_);
   file.begin();
-  for (const int s : {0, 1, 2, 5, 8, 9, 10}) circle_.add(file, s);
+  for (const int s : {0, 1, 2, 5, 8, 9, 10, 13}) circle_.add(file, s);
   const Trajectory read = read_oem(path_);
-  ASSERT_EQ(read.segments.size(), 2u);
+  ASSERT_EQ(read.segments.size(), 4u);
   EXPECT_EQ(read.segments[0].time_s.size(), 3u);
-  EXPECT_EQ(read.segments[1].time_s.size(), 3u);
+  ASSERT_EQ(read.segments[1].time_s.size(), 1u);
+  EXPECT_NEAR(read.segments[1].time_s[0], 5.0, 1e-9);
+  EXPECT_EQ(read.segments[1].usable_stop_s, read.segments[1].usable_start_s);
+  EXPECT_EQ(read.segments[2].time_s.size(), 3u);
+  EXPECT_EQ(read.segments[3].time_s.size(), 1u);
+}
+
+TEST_F(OemFileTest, WithoutAStateThereIsNoFile) {
+  write_file_whole(path_, "CCSDS_OEM_VERS = 2.0\nMETA_START\n");
+  OemFile file(path_, subject_);
+  file.keep_before(circle_.utc(0));
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  file.begin();
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  circle_.add(file, 0);
+  EXPECT_EQ(read_oem(path_).segments.size(), 1u);
+}
+
+// CCSDS 502.0-B-2, 7.2.3: printable ASCII.
+TEST_F(OemFileTest, NamesAreInPrintableAscii) {
+  OemFile file(path_, {"na\xc3\xafve", "98\t067A", subject_.creation_date});
+  file.begin();
+  circle_.add(file, 0);
+  const std::string text = read_text_file(path_);
+  EXPECT_NE(text.find("\nOBJECT_NAME = na??ve\nOBJECT_ID = 98?067A\n"), std::string::npos) << text;
 }
 
 TEST_F(OemFileTest, TakenUpAtAnyStateItBecomesTheSameBytes) {
-  const std::vector<int> all{0, 1, 2, 5, 8, 9, 10, 11};
+  const std::vector<int> all{0, 3, 4, 5, 8, 10, 11};
   {
     OemFile file(path_, subject_);
     file.begin();
@@ -87,8 +110,9 @@ TEST_F(OemFileTest, TakenUpAtAnyStateItBecomesTheSameBytes) {
 TEST_F(OemFileTest, ADirectoryThatIsNotThereIsNamed) {
   const std::string path = testing::TempDir() + "not-there/x.oem";
   OemFile file(path, subject_);
+  file.begin();
   try {
-    file.begin();
+    circle_.add(file, 0);
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.what(), path + ": can't be written: No such file or directory");
