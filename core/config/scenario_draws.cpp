@@ -1,9 +1,11 @@
 #include "core/config/scenario_draws.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/config/schema.h"
 #include "core/config/yaml_limits.h"
 
 namespace dmise {
@@ -30,6 +32,21 @@ bool is_number(const YamlValue& value) {
   } catch (const ConfigError&) {
     return false;
   }
+}
+
+/// Whether readers take a number at a path such as "sensors[0].exposure_s", of values with `forms`.
+bool takes_number(std::string_view path, const Forms& forms) {
+  if (path.starts_with('.')) path.remove_prefix(1);
+  return std::ranges::any_of(forms, [path](const Form& form) {
+    if (path.empty()) return form.kind == Form::Kind::number || form.kind == Form::Kind::integer;
+    if (path.starts_with('['))
+      return form.kind == Form::Kind::list &&
+             takes_number(path.substr(path.find(']') + 1), form.items);
+    if (form.kind != Form::Kind::map || !form.section) return false;
+    const std::size_t end = std::min(path.find_first_of(".["), path.size());
+    const Key* key = form.section().find(path.substr(0, end));
+    return key && takes_number(path.substr(end), key->forms);
+  });
 }
 
 /// Checks the form of every distribution, also of those in choices that are not taken.
@@ -65,7 +82,10 @@ YamlValue ScenarioDraws::resolved(const Choose& choose, std::vector<DrawnValue>*
     }
     if (!drawn) return;
     if (value.is_scalar())
-      drawn->push_back({value.path(), value.node().Scalar(), is_number(value)});
+      drawn->push_back(
+          {value.path(), value.node().Scalar(),
+           is_number(value) &&
+               (taken.choice < 0 || takes_number(value.path(), form::map(scenario_section)))});
     else
       drawn->push_back({value.path() + ".one_of" + key.substr(value.path().size()),
                         std::to_string(taken.choice), true});
@@ -89,9 +109,10 @@ DrawnScenario ScenarioDraws::draw(std::uint64_t seed) const {
   return result;
 }
 
-void ScenarioDraws::check_ends() const { check_with({}, {}); }
+void ScenarioDraws::check_ends(const Visit& visit) const { check_with({}, {}, visit); }
 
-void ScenarioDraws::check_with(const std::vector<Fixed>& fixed, std::set<std::string> known) const {
+void ScenarioDraws::check_with(const std::vector<Fixed>& fixed, std::set<std::string> known,
+                               const Visit& visit) const {
   std::vector<std::pair<std::string, Distribution>> met;  // for the first time
   const YamlValue tree = resolved([&](const Distribution& from, const std::string& key) {
     if (known.insert(from.value().where() + " " + key).second) met.emplace_back(key, from);
@@ -100,7 +121,8 @@ void ScenarioDraws::check_with(const std::vector<Fixed>& fixed, std::set<std::st
     return from.middle();
   });
   try {
-    read_scenario(tree);
+    const Scenario scenario = read_scenario(tree);
+    if (visit) visit(scenario);
   } catch (const ConfigError& e) {
     const std::string which = !fixed.empty() ? " (" + fixed.back().value.what + ")"
                               : met.empty()  ? ""
@@ -111,7 +133,7 @@ void ScenarioDraws::check_with(const std::vector<Fixed>& fixed, std::set<std::st
     for (const auto& end : distribution.ends()) {
       auto next = fixed;
       next.push_back({key, end});
-      check_with(next, known);
+      check_with(next, known, visit);
     }
 }
 

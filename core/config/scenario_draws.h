@@ -16,7 +16,7 @@ struct DrawnValue {
   // that choice with ".one_of/1".
   std::string path;
   std::string text;
-  bool is_number = false;
+  bool is_number = false;  // also by the key: a name of digits is none
 };
 
 /// A scenario for one seed.
@@ -35,9 +35,11 @@ class ScenarioDraws {
   const std::string& text() const { return text_; }
   /// Draws all values and reads the scenario. Throws `ConfigError` "... (as drawn for seed N)".
   DrawnScenario draw(std::uint64_t seed) const;
-  /// Reads the scenario with each distribution at its ends and the others in the middle. Throws
-  /// `ConfigError` with the value that is refused and which end it is.
-  void check_ends() const;
+  using Visit = std::function<void(const Scenario&)>;
+  /// Reads the scenario with each distribution at its ends and the others in the middle, and calls
+  /// `visit` with each: together they name all files that a draw can name. Throws `ConfigError`
+  /// with the value that is refused and which end it is.
+  void check_ends(const Visit& visit = {}) const;
 
  private:
   using Choose = std::function<Distribution::Value(const Distribution&, const std::string& key)>;
@@ -49,7 +51,8 @@ class ScenarioDraws {
 
   YamlValue root() const;
   /// Distributions that are not `known` are new: in a choice that is taken now.
-  void check_with(const std::vector<Fixed>& fixed, std::set<std::string> known) const;
+  void check_with(const std::vector<Fixed>& fixed, std::set<std::string> known,
+                  const Visit& visit) const;
   YamlValue resolved(const Choose& choose, std::vector<DrawnValue>* drawn = nullptr) const;
 
   std::string path_, text_;

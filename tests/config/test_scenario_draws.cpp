@@ -177,6 +177,38 @@ TEST_F(ScenarioDrawsTest, EndsThatNoSensorTakesAreNamed) {
             std::string::npos);
 }
 
+TEST_F(ScenarioDrawsTest, EveryChoiceIsVisited) {
+  std::multiset<std::string> cameras;
+  draws(good, "[omnissa, raven]", "[omnissa, {one_of: [raven, star-tracker]}]")
+      .check_ends(
+          [&](const Scenario& scenario) { cameras.insert(scenario.sensors[0].camera.name); });
+  EXPECT_GE(cameras.count("omnissa"), 1u);
+  EXPECT_GE(cameras.count("raven"), 1u);
+  EXPECT_EQ(cameras.count("star-tracker"), 1u);
+}
+
+// A name may have digits alone; a number of the same digits is one.
+TEST_F(ScenarioDrawsTest, AChoiceIsANumberWhereItsKeyTakesOne) {
+  const auto is_number = [&](const char* what, const char* with, const char* path) {
+    for (const auto& value : draws(good, what, with).draw(1).drawn)
+      if (value.path == path) return value.is_number;
+    ADD_FAILURE() << path;
+    return false;
+  };
+  EXPECT_FALSE(is_number("name: atlanta", "name: {one_of: [007, 1e3]}", "sensors[0].name"));
+  EXPECT_TRUE(
+      is_number("cadence_s: 30", "cadence_s: {one_of: [4e1, +30]}", "sensors[0].cadence_s"));
+  EXPECT_TRUE(
+      is_number("tick_s: 5", "tick_s: {one_of: [5, {one_of: [5, 5]}]}", "simulation.tick_s"));
+  EXPECT_FALSE(is_number("{azimuth_deg: {uniform: [0, 360]}, elevation_deg: 60}",
+                         "{target: {one_of: [29155, 36411]}}", "sensors[0].pointing.target"));
+  EXPECT_TRUE(is_number("elevation_deg: 60", "elevation_deg: {uniform: [50, 60]}",
+                        "sensors[0].pointing.elevation_deg"));
+  EXPECT_TRUE(is_number("{azimuth_deg: {uniform: [0, 360]}, elevation_deg: 60}",
+                        "{one_of: [{azimuth_deg: 5, elevation_deg: {one_of: [50, 60]}}]}",
+                        "sensors[0].pointing.elevation_deg"));
+}
+
 TEST_F(ScenarioDrawsTest, AFaultOfTogetherDrawnValuesNamesTheSeed) {
   const auto both = draws(good, "cadence_s: 30", "cadence_s: {uniform: [5, 30]}");
   const std::string message = complaint([&] {
