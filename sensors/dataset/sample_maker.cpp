@@ -1,11 +1,14 @@
 #include "sensors/dataset/sample_maker.h"
 
+#include <algorithm>
+
 #include "core/base/formatted.h"
 #include "core/config/make_clock.h"
 #include "core/dataset/npy.h"
 #include "core/dataset/tar.h"
 #include "core/image/fits_file.h"
 #include "core/sim/controller.h"
+#include "core/time/iso8601.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/dataset/frame_labels.h"
@@ -70,12 +73,14 @@ class SensorFrames {
   std::vector<SampleFrame> frames_;
 };
 
-/// Names of a scenario's objects, platforms and targets.
+/// Names of a scenario's objects, platforms and targets, and files that objects are loaded from.
 std::string names_in(const Scenario& scenario) {
   std::string names;
   const auto add = [&](const std::string& name) { names += name + "\n"; };
+  add(scenario.earth_orientation_path);
   for (const ObjectSource& source : scenario.objects) {
     add(source.path);
+    add(source.facts_path);
     for (const auto& name : source.only) add(name);
   }
   for (const OwnObject& object : scenario.own_objects)
@@ -84,8 +89,17 @@ std::string names_in(const Scenario& scenario) {
   for (const SensorConfig& sensor : scenario.sensors) {
     if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place)) add(platform->object);
     if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) add(target->object);
+    add(std::holds_alternative<PointBody>(sensor.pointing) ? "body" : "");
   }
   return names;
+}
+
+/// Whether an object is described for a span of time alone.
+bool has_spans(const Scenario& scenario) {
+  return std::ranges::any_of(scenario.own_objects, [](const OwnObject& object) {
+    return !object.motion.trajectory_path.empty() ||
+           (object.attitude && !object.attitude->table_path.empty());
+  });
 }
 
 }  // namespace
@@ -93,8 +107,13 @@ std::string names_in(const Scenario& scenario) {
 void SampleMaker::prepare(const Scenario& scenario) {
   if (!stars_.contains(scenario.star_catalogue_path))
     stars_[scenario.star_catalogue_path] = load_stars(scenario);
-  if (!checked_.insert(names_in(scenario)).second) return;
-  check_sensors(scenario, load_objects(scenario, make_clock(scenario)).roster);
+  if (checked_.insert(names_in(scenario)).second) {
+    check_sensors(scenario, load_objects(scenario, make_clock(scenario)).roster);
+  } else if (has_spans(scenario)) {
+    Scenario own = scenario;  // without the catalogues, which take longer
+    own.objects.clear();
+    load_objects(own, Clock(parse_utc(own.start_utc)));
+  }
 }
 
 std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {

@@ -26,7 +26,8 @@ class SampleMaker {
   explicit SampleMaker(std::string digest) : digest_(std::move(digest)) {}
 
   /// Loads the star catalogue of a scenario, so that processes forked later share it, and checks
-  /// that its sensors have the platforms and targets that they name. Quick for what is like before.
+  /// that its sensors have the platforms and targets that they name, and that its trajectories and
+  /// tables cover its times. Quick for what is like before.
   void prepare(const Scenario& scenario);
   /// Returns the frames of all sensors, by sensor and frame. Throws what a run throws.
   std::vector<SampleFrame> make(const DrawnScenario& sample);
