@@ -44,13 +44,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> two_numbers(std::string_v
   return std::pair(*first, *second);
 }
 
-/// A task of a job array: it makes the i-th of every n archives.
-struct Task {
-  std::uint64_t number = 1, count = 1;
-  bool makes(std::size_t shard) const { return shard % count == number - 1; }
-};
-
-Task task_of(const DatasetOptions& options) {
+DatasetTask task_of(const DatasetOptions& options) {
   const auto numbers = two_numbers(options.shard, "/");
   if (!numbers || numbers->first < 1 || numbers->first > numbers->second)
     throw ConfigError("--shard: must be i/n with i from 1 to n, got " + printable(options.shard));
@@ -77,53 +71,63 @@ DatasetPlan plan_of(const DatasetOptions& options, const std::string& scenario_t
   return plan;
 }
 
-/// SHA-256 of what determines the bytes. Presets and catalogues are found by drawing some of the
-/// seeds.
+/// Reads the scenario at the ends and with all choices of its distributions. Returns the SHA-256 of
+/// what determines the bytes: presets and catalogues are those that the choices name.
 std::string digest_of(const DatasetPlan& plan, const ScenarioDraws& draws) {
-  constexpr std::uint64_t most_samples = 200;
   Sha256 sha;
   sha.update(software_name() + "\n" + std::to_string(plan.first_seed) + ".." +
              std::to_string(plan.last_seed) + "/" + std::to_string(plan.seeds_per_shard) + "\n" +
              plan.scenario_text);
   std::set<std::string> files;
-  const std::uint64_t count = plan.last_seed - plan.first_seed + 1;
-  const std::uint64_t samples = std::min(count, most_samples);
-  for (std::uint64_t k = 0; k < samples; ++k) {
-    const Scenario scenario = draws.draw(plan.first_seed + k * count / samples).scenario;
+  draws.check_ends([&](const Scenario& scenario) {
     sha.update("\n" + physics_json(scenario));
     for (const auto& path : files_of(scenario.objects, scenario.own_objects)) files.insert(path);
     files.insert(scenario.star_catalogue_path);
     files.insert(scenario.earth_orientation_path);
-  }
+  });
   for (const auto& path : files)
     if (!path.empty()) sha.update("\n" + file_digest(path));
   return sha.hex().substr(0, 32);
 }
 
-void check_output(const Scenario& scenario, std::uint64_t seed) {
+void check_output(const Scenario& scenario) {
   const OutputConfig& output = scenario.output;
   const char* unknown = output.fits_rice                                      ? "fits.compression"
                         : output.saturation                                   ? "saturation"
                         : output.radiance_exr                                 ? "radiance_exr"
                         : output.sources || output.background || output.noise ? "planes"
+                        : output.star_truth                                   ? "star_truth"
+                        : output.positions()                                  ? "positions"
                                                                               : nullptr;
   if (unknown)
-    throw ConfigError(scenario.path + ": output." + unknown +
-                      ": is for runs, not for data sets (as drawn for seed " +
-                      std::to_string(seed) + ")");
+    throw ConfigError(scenario.path + ": output." + unknown + ": is for runs, not for data sets");
+  if (scenario.fusion)
+    throw ConfigError(scenario.fusion->where + ": is for runs, not for data sets");
 }
 
 /// Reads the scenario of every seed of this task, so that errors are found before the first frame.
-void check_seeds(const DatasetPlan& plan, const Task& task, const ScenarioDraws& draws,
+void check_seeds(const DatasetPlan& plan, const DatasetTask& task, const ScenarioDraws& draws,
                  SampleMaker& maker) {
   Progress progress;
+  const auto check = [&](std::uint64_t seed) {
+    const Scenario scenario = draws.draw(seed).scenario;
+    const auto as_drawn = [seed](const Error& e) {
+      return std::string(e.what()) + " (as drawn for seed " + std::to_string(seed) + ")";
+    };
+    try {
+      check_output(scenario);
+      maker.prepare(scenario);
+    } catch (const ConfigError& e) {
+      throw ConfigError(as_drawn(e));
+    } catch (const Error& e) {
+      throw Error(as_drawn(e));
+    }
+  };
   for (std::size_t shard = 0; shard < plan.shards(); ++shard) {
     if (!task.makes(shard)) continue;
     progress.show_share(double(shard) / double(plan.shards()), "dataset: checking the seeds");
     for (std::uint64_t seed = plan.first_of(shard); seed <= plan.last_of(shard); ++seed) {
-      const Scenario scenario = draws.draw(seed).scenario;
-      check_output(scenario, seed);
-      maker.prepare(scenario);
+      check(seed);
       if (stop_signal().is_set()) throw ExitWith{130};
     }
   }
@@ -132,7 +136,7 @@ void check_seeds(const DatasetPlan& plan, const Task& task, const ScenarioDraws&
 /// The samples of a task that are still to be made; assembles its archives.
 class TaskWork {
  public:
-  TaskWork(const DatasetPlan& plan, const Task& task, const DatasetDirectory& directory)
+  TaskWork(const DatasetPlan& plan, const DatasetTask& task, const DatasetDirectory& directory)
       : directory_(directory) {
     for (std::size_t shard = 0; shard < plan.shards(); ++shard) {
       if (!task.makes(shard)) continue;
@@ -216,28 +220,11 @@ void make_samples(TaskWork& work, const ScenarioDraws& draws, SampleMaker& maker
   work.assemble();
 }
 
-/// Returns whether there is something to do.
-bool prepare(const DatasetDirectory& directory, const DatasetOptions& options) {
-  using Content = DatasetDirectory::Content;
-  const Content content = directory.content();
-  if (content == Content::same_complete && !options.force) {
-    std::printf("%s contains this data set, complete; --force repeats it\n", options.out.c_str());
-    return false;
-  }
-  if (content == Content::another && !options.force)
-    throw ConfigError(options.out +
-                      ": contains another data set; --force replaces it, --out writes elsewhere");
-  if (options.force) directory.clear();
-  directory.begin();
-  return true;
-}
-
 void dataset(const DatasetOptions& options) {
   stop_signal();
-  const Task task = task_of(options);
+  const DatasetTask task = task_of(options);
   const ScenarioDraws draws(options.scenario);
   DatasetPlan plan = plan_of(options, draws.text());
-  draws.check_ends();
   plan.digest = digest_of(plan, draws);
   SampleMaker maker(plan.digest);
   check_seeds(plan, task, draws, maker);
@@ -246,11 +233,11 @@ void dataset(const DatasetOptions& options) {
                 options.seeds.c_str());
     return;
   }
-  const DatasetDirectory directory(options.out, plan);
-  if (!prepare(directory, options)) return;
-  const auto lock =
-      directory.lock("task-" + std::to_string(task.number) + "-of-" + std::to_string(task.count));
-  if (!lock) throw ConfigError(options.out + ": another process works on --shard " + options.shard);
+  DatasetDirectory directory(options.out, plan);
+  if (!directory.begin(task, options.force)) {
+    std::printf("%s contains this data set, complete; --force repeats it\n", options.out.c_str());
+    return;
+  }
   TaskWork work(plan, task, directory);
   make_samples(work, draws, maker, directory, options.workers > 0 ? options.workers : processors());
   const std::size_t missing = directory.finish();
@@ -287,7 +274,8 @@ void add_dataset_command(CLI::App& app) {
                    "number of processes; by default one for each processor")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--check", options->check, "only read the scenario of every seed");
-  command->add_flag("--force", options->force, "replace the data set in the directory");
+  command->add_flag("--force", options->force,
+                    "replace the data set in the directory, and files with the names of one");
   command->callback([options] { dataset(*options); });
 }
 

@@ -1,14 +1,18 @@
 #include "launch/dataset_directory.h"
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <sstream>
+#include <thread>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/paths.h"
+#include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
@@ -20,9 +24,48 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view partial_ending = ".partial", partial_plan = "plan.json.partial";
+
+// Bytes of .dataset-lock.
+constexpr std::int64_t directory_byte = 0;  // shared by tasks, alone to begin and to remove
+constexpr std::int64_t finish_byte = 1;     // to write coco.json and dataset.json
+constexpr std::int64_t task_byte = 1;       // plus the number of the task, from 1
+
 void remove(const std::string& path) {
   std::error_code ignored;
-  fs::remove_all(path, ignored);
+  fs::remove(path, ignored);  // of directories only empty ones
+}
+
+bool is_directory(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+std::vector<std::string> names_in(const std::string& directory) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(directory, ignored))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Whether `name` is `start`, at least `fewest` digits and one of `endings`, complete or not.
+bool is_numbered(std::string name, std::string_view start, std::size_t fewest,
+                 std::initializer_list<std::string_view> endings) {
+  if (name.ends_with(partial_ending)) name.resize(name.size() - partial_ending.size());
+  if (!name.starts_with(start)) return false;
+  const std::size_t end = name.find_first_not_of("0123456789", start.size());
+  return end != std::string::npos && end - start.size() >= fewest &&
+         std::ranges::find(endings, std::string_view(name).substr(end)) != endings.end();
+}
+
+bool is_archive(const std::string& name) { return is_numbered(name, "dataset-", 6, {".tar"}); }
+
+bool is_part(const std::string& name) {
+  return name == "plan.json" || name == partial_plan ||
+         is_numbered(name, "sample-", 1, {".tar", ".coco"}) ||
+         is_numbered(name, "dataset-", 6, {".json", ".coco"});
 }
 
 std::string head(const DatasetPlan& plan) {
@@ -33,8 +76,18 @@ std::string head(const DatasetPlan& plan) {
   return json.field("seeds_per_shard", plan.seeds_per_shard).take();
 }
 
+/// Of plan.json: in how many tasks the data set is made.
+std::string tasks_field(std::uint64_t tasks) { return ",\"tasks\":" + std::to_string(tasks); }
+
 constexpr std::size_t any_size = std::size_t(1) << 40;  // of a file
 constexpr std::string_view image_mark = "image ", annotation_mark = "annotation ";
+
+std::string sample_name(std::uint64_t seed, const char* ending) {
+  return "sample-" + std::to_string(seed) + ending;
+}
+
+/// First line of the text files of parts.
+std::string digest_line(const DatasetPlan& plan) { return "dataset " + plan.digest + "\n"; }
 
 /// A file that is written atomically, with its digest and size.
 class DigestedFile {
@@ -68,41 +121,91 @@ DatasetDirectory::DatasetDirectory(std::string path, DatasetPlan plan)
   make_directories(path_);
 }
 
+bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
+  const std::string lock_path = path_ + "/.dataset-lock";
+  // Without a lock, which could not be made in a directory that is only read.
+  if (!force && (path_exists(path_ + "/dataset.json") || !path_exists(lock_path)) &&
+      content() == Content::same_complete)
+    return false;
+  lock_.emplace(lock_path);
+  const bool alone = lock(force);
+  if (force) clear();
+  if (!force && content() == Content::same_complete) return false;
+  if (alone) {
+    make_directories(path_ + "/parts");
+    // First the plan: it tells that the other files are ours.
+    write_file_whole(part("plan.json"), head(plan_) + tasks_field(task.count) + "}\n");
+    write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
+    lock_->take(directory_byte, FileLock::Use::shared);
+  } else {
+    require_tasks(task);
+  }
+  if (!lock_->take(task_byte + std::int64_t(task.number), FileLock::Use::alone))
+    throw ConfigError(path_ + ": another process works on --shard " + std::to_string(task.number) +
+                      "/" + std::to_string(task.count));
+  return true;
+}
+
+bool DatasetDirectory::lock(bool force) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (true) {
+    if (lock_->take(directory_byte, FileLock::Use::alone)) return true;
+    if (!force && lock_->take(directory_byte, FileLock::Use::shared)) return false;
+    if (force || std::chrono::steady_clock::now() > give_up)
+      throw ConfigError(path_ + ": another process works in this directory");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it begins or removes files
+  }
+}
+
+void DatasetDirectory::require_tasks(const DatasetTask& task) const {
+  const std::string text = read_text_file(part("plan.json"));
+  if (text.find(tasks_field(task.count) + "}") != std::string::npos) return;
+  throw ConfigError(path_ +
+                    ": other processes make this data set, with another n of --shard i/n, got " +
+                    std::to_string(task.number) + "/" + std::to_string(task.count));
+}
+
 DatasetDirectory::Content DatasetDirectory::content() const {
   const std::string mark = "\"digest\":\"" + plan_.digest + "\"";
-  for (const auto& [path, same] : {std::pair{path_ + "/dataset.json", Content::same_complete},
-                                   std::pair{part("plan.json"), Content::same_unfinished}})
-    if (path_exists(path))
-      return read_text_file(path).find(mark) != std::string::npos ? same : Content::another;
+  const std::pair manifest{path_ + "/dataset.json", Content::same_complete};
+  const std::pair plan{part("plan.json"), Content::same_unfinished};
+  // The manifest again: another process may have written it and removed the plan meanwhile.
+  for (const auto& [path, same] : {manifest, plan, manifest}) {
+    if (!path_exists(path)) continue;
+    if (read_text_file(path).find(mark) != std::string::npos) return same;
+    throw ConfigError(path_ +
+                      ": contains another data set; --force replaces it, --out writes elsewhere");
+  }
+  if (const std::string file = file_of_no_dataset(); !file.empty())
+    throw ConfigError(path_ + ": contains " + printable(file) +
+                      ", which is of no data set there; --force replaces files of such names, "
+                      "--out writes elsewhere");
   return Content::nothing;
 }
 
+std::string DatasetDirectory::file_of_no_dataset() const {
+  for (const std::string& name : names_in(path_))
+    if (name == "scenario.yaml" || name == "coco.json" || is_archive(name)) return name;
+  if (path_exists(path_ + "/parts") && !is_directory(path_ + "/parts")) return "parts";
+  for (const std::string& name : names_in(path_ + "/parts"))
+    if (name != partial_plan) return "parts/" + name;
+  return "";
+}
+
 void DatasetDirectory::clear() const {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(path_, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("dataset-") && name.ends_with(".tar")) remove(entry.path().string());
-  }
-  for (const char* name : {"/dataset.json", "/coco.json", "/scenario.yaml", "/parts"})
+  for (const char* name : {"/dataset.json", "/coco.json"}) {
     remove(path_ + name);
+    remove(path_ + name + std::string(partial_ending));
+  }
+  for (const std::string& name : names_in(path_))
+    if (is_archive(name)) remove(path_ + "/" + name);
+  remove_parts();
 }
 
-void DatasetDirectory::begin() const {
-  make_directories(path_ + "/parts");
-  const auto starting = lock("start");  // tasks of a job array begin together
-  if (!starting || path_exists(part("plan.json"))) return;
-  write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
-  write_file_whole(part("plan.json"), head(plan_) + "}\n");
-}
-
-std::optional<FileLock> DatasetDirectory::lock(const std::string& name) const {
-  FileLock lock(part(name + ".lock"));
-  if (!lock.take()) return std::nullopt;
-  return lock;
-}
-
-std::string DatasetDirectory::sample_part(std::uint64_t seed, const char* ending) const {
-  return part("sample-" + std::to_string(seed) + ending);
+void DatasetDirectory::remove_parts() const {
+  for (const std::string& name : names_in(path_ + "/parts"))
+    if (is_part(name)) remove(part(name));
+  if (is_directory(path_ + "/parts")) remove(path_ + "/parts");
 }
 
 bool DatasetDirectory::has_shard(std::size_t shard) const {
@@ -110,20 +213,28 @@ bool DatasetDirectory::has_shard(std::size_t shard) const {
 }
 
 bool DatasetDirectory::has_sample(std::uint64_t seed) const {
-  return path_exists(sample_part(seed, ".tar"));
+  return path_exists(part(sample_name(seed, ".tar")));
 }
 
 void DatasetDirectory::write_sample(std::uint64_t seed,
                                     const std::vector<SampleFrame>& frames) const {
-  std::string members, lines;
+  std::string members, lines = digest_line(plan_);
   for (const SampleFrame& frame : frames) {
     members += frame.members;
     lines += std::string(image_mark) + frame.coco_image + "\n";
     for (const std::string& annotation : frame.coco_annotations)
       lines += std::string(annotation_mark) + annotation + "\n";
   }
-  write_file_whole(sample_part(seed, ".coco"), lines);
-  write_file_whole(sample_part(seed, ".tar"), members);  // last: it marks the sample as complete
+  write_file_whole(part(sample_name(seed, ".coco")), lines);
+  // Last: it marks the sample as complete.
+  write_file_whole(part(sample_name(seed, ".tar")), members);
+}
+
+std::string DatasetDirectory::lines_of(const std::string& part_name) const {
+  const std::string text = read_text_file(part(part_name), any_size), first = digest_line(plan_);
+  if (!text.starts_with(first))
+    throw Error(part(part_name) + ": is of another data set; --force makes all anew");
+  return text.substr(first.size());
 }
 
 void DatasetDirectory::assemble(std::size_t shard) const {
@@ -132,8 +243,8 @@ void DatasetDirectory::assemble(std::size_t shard) const {
   DigestedFile archive(path_ + "/" + name);
   std::string lines;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    archive.append(read_text_file(sample_part(seed, ".tar"), any_size));
-    lines += read_text_file(sample_part(seed, ".coco"), any_size);
+    lines += lines_of(sample_name(seed, ".coco"));
+    archive.append(read_text_file(part(sample_name(seed, ".tar")), any_size));
   }
   archive.append(tar_end());
   const auto count = [&](std::string_view mark) {
@@ -144,14 +255,14 @@ void DatasetDirectory::assemble(std::size_t shard) const {
       ++n;
     return n;
   };
-  write_file_whole(part(shard_name(shard, ".coco")), lines);
+  write_file_whole(part(shard_name(shard, ".coco")), digest_line(plan_) + lines);
   JsonWriter json;
   json.begin_object().field("name", name).list("seeds", std::array{first, last});
   json.field("frames", count(image_mark)).field("objects", count(annotation_mark));
   archive.finish(json);
   write_file_whole(part(shard_name(shard, ".json")), json.end_object().take());
   for (std::uint64_t seed = first; seed <= last; ++seed)
-    for (const char* ending : {".tar", ".coco"}) remove(sample_part(seed, ending));
+    for (const char* ending : {".tar", ".coco"}) remove(part(sample_name(seed, ending)));
 }
 
 std::string DatasetDirectory::write_coco() const {
@@ -165,7 +276,7 @@ std::string DatasetDirectory::write_coco() const {
     file.append(images ? ",\"images\":[" : ",\"annotations\":[");
     std::uint64_t image = 0, annotation = 0;
     for (std::size_t shard = 0; shard < plan_.shards(); ++shard) {
-      std::istringstream lines(read_text_file(part(shard_name(shard, ".coco")), any_size));
+      std::istringstream lines(lines_of(shard_name(shard, ".coco")));
       for (std::string line; std::getline(lines, line);) {
         const bool is_image = line.starts_with(image_mark);
         std::uint64_t& id = is_image ? image : annotation;
@@ -188,18 +299,22 @@ std::string DatasetDirectory::write_coco() const {
   return json.end_object().take();
 }
 
-std::size_t DatasetDirectory::finish() const {
+std::size_t DatasetDirectory::finish() {
   std::size_t missing = 0;
   for (std::size_t shard = 0; shard < plan_.shards(); ++shard) missing += !has_shard(shard);
-  if (content() == Content::same_complete) return 0;  // another process did it
   if (missing > 0) return missing;
-  const auto finishing = lock("finish");
-  if (!finishing || content() == Content::same_complete) return 0;
-  std::string text = head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
-  for (std::size_t shard = 0; shard < plan_.shards(); ++shard)
-    text += (shard > 0 ? ",\n" : "\n") + read_text_file(part(shard_name(shard, ".json")));
-  write_file_whole(path_ + "/dataset.json", text + "\n]}\n");
-  remove(path_ + "/parts");
+  const bool finishes = lock_->take(finish_byte, FileLock::Use::alone);  // else another process
+  if (finishes && content() != Content::same_complete) {
+    std::string text = head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
+    for (std::size_t shard = 0; shard < plan_.shards(); ++shard)
+      text += (shard > 0 ? ",\n" : "\n") + read_text_file(part(shard_name(shard, ".json")));
+    write_file_whole(path_ + "/dataset.json", text + "\n]}\n");
+  }
+  // The last process that leaves the directory can have it alone.
+  lock_->release(directory_byte);
+  if (lock_->take(directory_byte, FileLock::Use::alone) && path_exists(path_ + "/dataset.json"))
+    remove_parts();
+  lock_.reset();
   return 0;
 }
 

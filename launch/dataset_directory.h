@@ -24,40 +24,57 @@ struct DatasetPlan {
   }
 };
 
+/// A task of a job array: it makes the number-th of every `count` archives.
+struct DatasetTask {
+  std::uint64_t number = 1, count = 1;
+  bool makes(std::size_t shard) const { return shard % count == number - 1; }
+};
+
 /// The directory of a data set: dataset-NNNNNN.tar, coco.json, scenario.yaml and, when all is done,
 /// dataset.json. Work in progress is in parts/: samples, each complete or missing, from which
-/// archives are put together. Several processes may work on different archives.
+/// archives are put together. Several processes may work on different archives of one data set;
+/// .dataset-lock, which is kept, has their locks. Files with other names are never touched.
 class DatasetDirectory {
  public:
-  enum class Content { nothing, same_unfinished, same_complete, another };
-
   /// Throws `Error` "PATH: reason" if it can't be made.
   DatasetDirectory(std::string path, DatasetPlan plan);
 
-  Content content() const;
-  /// Removes a data set.
-  void clear() const;
-  /// Writes the plan, by which other processes see whether they continue it.
-  void begin() const;
-  /// Locks a part of the work; empty if another process holds it.
-  std::optional<FileLock> lock(const std::string& name) const;
+  /// Begins or continues the work of a task, which is locked for the lifetime of this object.
+  /// `force` removes a data set, and files with the names of one. Returns false if this data set is
+  /// complete. Throws `ConfigError` if there are files of another or of none, or other processes
+  /// work on the same task, with another number of tasks or, with `force`, at all.
+  bool begin(const DatasetTask& task, bool force);
 
   bool has_shard(std::size_t shard) const;
   bool has_sample(std::uint64_t seed) const;
   /// Writes a sample, complete or not at all.
   void write_sample(std::uint64_t seed, const std::vector<SampleFrame>& frames) const;
-  /// Puts an archive together from its samples, which are then removed.
+  /// Puts an archive together from its samples, which are then removed. Throws `Error` if one is
+  /// of another data set.
   void assemble(std::size_t shard) const;
-  /// Writes coco.json and dataset.json if all archives exist. Returns the number of missing ones.
-  std::size_t finish() const;
+  /// Writes coco.json and dataset.json if all archives exist, and ends the work. Returns the number
+  /// of missing ones.
+  std::size_t finish();
 
  private:
+  enum class Content { nothing, same_unfinished, same_complete };
+
   std::string part(const std::string& name) const { return path_ + "/parts/" + name; }
-  std::string sample_part(std::uint64_t seed, const char* ending) const;
+  /// Throws `ConfigError` for files of another data set or of none.
+  Content content() const;
+  std::string file_of_no_dataset() const;
+  /// Returns whether no other process works in the directory; until the plan is written, none can
+  /// begin then.
+  bool lock(bool force);
+  void require_tasks(const DatasetTask& task) const;
+  void clear() const;
+  void remove_parts() const;
+  std::string lines_of(const std::string& part_name) const;
   std::string write_coco() const;
 
   std::string path_;
   DatasetPlan plan_;
+  std::optional<FileLock> lock_;
 };
 
 /// "dataset-000007" + `ending`.

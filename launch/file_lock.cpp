@@ -25,12 +25,22 @@ FileLock::~FileLock() {
 
 FileLock::FileLock(FileLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
 
-bool FileLock::take() {
+bool FileLock::take() { return set(F_WRLCK, 0, 0); }
+
+bool FileLock::take(std::int64_t byte, Use use) {
+  return set(use == Use::alone ? F_WRLCK : F_RDLCK, byte, 1);
+}
+
+void FileLock::release(std::int64_t byte) { set(F_UNLCK, byte, 1); }
+
+bool FileLock::set(short type, std::int64_t first, std::int64_t bytes) {
   // Owned by the open file, not by the process: fcntl(2), open file description locks.
-  struct flock whole {};
-  whole.l_type = F_WRLCK;
-  whole.l_whence = SEEK_SET;
-  if (fcntl(fd_, F_OFD_SETLK, &whole) == 0) return true;
+  struct flock range {};
+  range.l_type = type;
+  range.l_whence = SEEK_SET;
+  range.l_start = first;
+  range.l_len = bytes;  // 0: all
+  if (fcntl(fd_, F_OFD_SETLK, &range) == 0) return true;
   if (errno == EAGAIN || errno == EACCES) return false;
   throw Error(std::string("a file can't be locked: ") + std::strerror(errno));
 }

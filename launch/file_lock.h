@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 namespace dmise {
@@ -14,10 +15,17 @@ class FileLock {
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;
 
-  /// False if another process holds it.
+  /// False if another process holds any of it.
   bool take();
 
+  enum class Use { alone, shared };
+  /// Takes one byte of the file, which need not exist: a file may have many locks. Changes the use
+  /// of a byte that is held. False if that of another process forbids it; then nothing changes.
+  bool take(std::int64_t byte, Use use);
+  void release(std::int64_t byte);
+
  private:
+  bool set(short type, std::int64_t first, std::int64_t bytes);
   int fd_ = -1;
 };
 

@@ -31,6 +31,23 @@ TEST_F(FileLocks, OneHasItAtATime) {
   EXPECT_TRUE(second.take());
 }
 
+TEST_F(FileLocks, OfBytesAreHeldAloneOrShared) {
+  using enum FileLock::Use;
+  std::optional<FileLock> first(file);
+  FileLock second(file);
+  EXPECT_TRUE(first->take(0, alone));
+  EXPECT_TRUE(second.take(1, alone));
+  EXPECT_FALSE(second.take(0, shared));
+  EXPECT_TRUE(first->take(0, shared));
+  EXPECT_TRUE(second.take(0, shared));
+  EXPECT_FALSE(first->take(0, alone));
+  EXPECT_FALSE(first->take());
+  second.release(0);
+  EXPECT_TRUE(first->take(0, alone));
+  first.reset();
+  EXPECT_TRUE(second.take());
+}
+
 TEST_F(FileLocks, EndWithTheirProcessAndPassToTheProgramThatItBecomes) {
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);

@@ -10,6 +10,7 @@ import pathlib
 import resource
 import signal
 import subprocess
+import textwrap
 import time
 
 from harness import Run, check, main, wait_until
@@ -35,8 +36,9 @@ SEEDS, PER_SHARD = "5..94", 20
 
 
 def dataset(binary, scenario, out, *more, **options):
-    return subprocess.run([str(a) for a in (binary, "dataset", scenario, "--seeds", SEEDS, "--per-shard", PER_SHARD, "--out", out,
-                                            *more)], capture_output=True, text=True, **options)
+    usual = () if "--seeds" in more else ("--seeds", SEEDS, "--per-shard", PER_SHARD)
+    return subprocess.run([str(a) for a in (binary, "dataset", scenario, *usual, "--out", out, *more)], capture_output=True, text=True,
+                          **options)
 
 
 def done(result, what):
@@ -97,6 +99,45 @@ def directories(binary, scenario, directory, reference):
     other.write_text(scenario.read_text().replace("[25, 40]", "[25, 41]"))
     refused(dataset(binary, other, reference), "contains another data set; --force replaces it")
     done(dataset(binary, other, reference, "--force"), "with --force it is replaced")
+    mine = directory / "mine"
+    (mine / "parts").mkdir(parents=True)
+    files = {"scenario.yaml": "# mine\n", "coco.json": "{}", "dataset-backup.tar": "x", "parts/my-file": "y"}
+    for name, text in files.items():
+        (mine / name).write_text(text)
+    few = ("--seeds", "1..2")
+    refused(dataset(binary, scenario, mine, *few), "mine: contains coco.json, which is of no data set there")
+    check(all((mine / name).read_text() == text for name, text in files.items()), "files of no data set are kept")
+    done(dataset(binary, scenario, mine, *few, "--force"), "with --force those of such names are replaced")
+    check(all((mine / name).read_text() == files[name] for name in ("dataset-backup.tar", "parts/my-file")), "and no others")
+
+
+def together(binary, scenario, directory):
+    """Processes that would disturb each other are refused, and what is made is as if they had never begun."""
+    other, out = directory / "other.yaml", directory / "together"
+    arguments = ("--seeds", "1..1000", "--per-shard", "4", "--workers", "1")
+    with Run(binary, "dataset", scenario, "--out", out, *arguments) as run:
+        wait_until(lambda: len(list(out.glob("dataset-*.tar"))) > 1, "archives")
+        refused(dataset(binary, other, out, *arguments, "--force"), "together: another process works in this directory")
+        refused(dataset(binary, other, out, *arguments), "together: contains another data set")
+        refused(dataset(binary, scenario, out, *arguments), "together: another process works on --shard 1/1")
+        refused(dataset(binary, scenario, out, *arguments, "--shard", "1/2"), "with another n of --shard i/n, got 1/2")
+        os.kill(run.process.pid, signal.SIGINT)
+        check(run.process.wait(timeout=20) == 130, "the first goes on until it is stopped")
+    out = directory / "choices"
+    cameras = [directory / f"camera-{k}.yaml" for k in range(3)]
+    text = SCENARIO
+    begin, end = text.index("    camera:\n"), text.index("    pointing:")
+    for camera in cameras:
+        camera.write_text(textwrap.dedent("\n".join(text[begin:end].splitlines()[1:])))
+    path = directory / "choices.yaml"
+    path.write_text(text[:begin] + f"    camera: {{one_of: [{', '.join(c.name for c in cameras)}]}}\n" + text[end:])
+    done(dataset(binary, path, out, "--seeds", "1..2"), "a choice of cameras")
+    for camera in cameras:
+        before = camera.read_text()
+        camera.write_text(before.replace("bias_dn: 100", "bias_dn: 101"))
+        refused(dataset(binary, path, out, "--seeds", "1..2"), "choices: contains another data set")
+        camera.write_text(before)
+    check("complete; --force" in dataset(binary, path, out, "--seeds", "1..2").stdout, "the files of every choice are in the digest")
 
 
 def refused(result, message):
@@ -119,8 +160,13 @@ def bad_input(binary, directory):
     of("cadence_s: 10", "cadence_s: {uniform: [2, 10]}", "must be <= cadence_s")
     of("one_of: [GOES 13", "one_off: [GOES 13", "sensors[0].pointing.target: must be a text, got a mapping")
     of("uniform: [2018-01-21T03", "uniform: [2018-02-30T03", "simulation.start.uniform[0]: must be a UTC time such as")
-    path.write_text(SCENARIO + "output: {planes: [noise]}\n")
-    refused(dataset(binary, path, out), "output.planes: is for runs")
+    for more, message in (("output: {planes: [noise]}", "output.planes: is for runs"),
+                          ("output: {star_truth: on}", "output.star_truth: is for runs"),
+                          ("output: {positions: [csv, oem]}", "output.positions: is for runs"),
+                          ("fusion: on", ": fusion: is for runs, not for data sets (as drawn for seed 5)")):
+        path.write_text(SCENARIO + more + "\n")
+        refused(dataset(binary, path, out), message)
+    short_trajectory(binary, directory, out)
     path.write_text(SCENARIO)
     for more, message in ((("--shard", "4/3"), "--shard: must be i/n with i from 1 to n, got 4/3"),
                           (("--shard", "0/3"), "got 0/3"), (("--seeds", "9..3"), "--seeds: must be A..B"),
@@ -134,6 +180,25 @@ def bad_input(binary, directory):
                 "bad.yaml:1:21: simulation.start: is a distribution (uniform): dmise dataset draws a value for each seed")
     result = dataset(binary, path, out, "--check")
     check(result.returncode == 0 and "can be made" in result.stdout and not out.exists(), "--check makes nothing")
+
+
+def short_trajectory(binary, directory, out):
+    """Each seed's times are compared with those of a trajectory, not the first seed's alone."""
+    states = "".join(f"2018-01-21T00:{13 + k}:00.000 {7000 + k} 0 0 0 7.5 0\n" for k in range(7))
+    (directory / "short.oem").write_text(
+        "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2018-01-21T00:00:00\nORIGINATOR = TEST\nMETA_START\nOBJECT_NAME = sat\n"
+        "OBJECT_ID = 2018-001A\nCENTER_NAME = EARTH\nREF_FRAME = GCRF\nTIME_SYSTEM = UTC\nSTART_TIME = 2018-01-21T00:13:00.000\n"
+        f"STOP_TIME = 2018-01-21T00:19:00.000\nMETA_STOP\n{states}")
+    path = directory / "short.yaml"
+    objects = SCENARIO[SCENARIO.index("objects:"):SCENARIO.index("stars:")]
+    text = SCENARIO.replace(objects, "objects: [{name: sat, motion: {oem: short.oem}}]\n")
+    text = text.replace("{one_of: [GOES 13, GOES 14, GOES 15]}", "sat").replace("duration_s: 20", "duration_s: 30")
+    path.write_text(text.replace("T03:00:00Z", "T00:15:00Z").replace("T09:00:00Z", "T00:19:20Z"))
+    for more in ((), ("--check",)):
+        result = dataset(binary, path, out, *more, "--seeds", "1..40")
+        refused(result, "short.oem: the trajectory of sat spans")
+        check("short.yaml:2:" in result.stderr and "(as drawn for seed " in result.stderr, "with place and seed")
+        check(not out.exists(), "before a frame is made")
 
 
 def failures(binary, scenario, directory):
@@ -179,6 +244,7 @@ def test(binary, directory):
     reference = any_workers_and_tasks(binary, scenario, directory)
     kills(binary, scenario, directory, reference)
     directories(binary, scenario, directory, reference)
+    together(binary, scenario, directory)
     bad_input(binary, directory)
     failures(binary, scenario, directory)
     in_time(binary, directory)

@@ -1,0 +1,196 @@
+#include "launch/dataset_directory.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <barrier>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DatasetDirectories : testing::Test {
+  DatasetDirectories() {
+    std::string path = testing::TempDir() + "dmise-dataset-XXXXXX";
+    directory = mkdtemp(path.data());
+  }
+  ~DatasetDirectories() override { fs::remove_all(directory); }
+
+  void write(const std::string& name, const std::string& text) const {
+    fs::create_directories(fs::path(directory + "/" + name).parent_path());
+    std::ofstream(directory + "/" + name) << text;
+  }
+  std::string text_of(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(directory + "/" + name).rdbuf();
+    return text.str();
+  }
+  std::set<std::string> names() const {
+    std::set<std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(directory))
+      all.insert(fs::relative(entry.path(), directory).string());
+    return all;
+  }
+  static DatasetPlan plan(const std::string& digest = "one") {
+    return {.last_seed = 4,
+            .seeds_per_shard = 2,
+            .scenario_text = "# of " + digest + "\n",
+            .digest = digest};
+  }
+  DatasetDirectory open(const std::string& digest = "one") const {
+    return {directory, plan(digest)};
+  }
+  /// The message with which a task is refused; empty if it begins.
+  std::string refusal(const DatasetTask& task = {}, bool force = false,
+                      const std::string& digest = "one") const {
+    try {
+      open(digest).begin(task, force);
+    } catch (const ConfigError& e) {
+      return std::string(e.what()).substr(directory.size() + 2);
+    }
+    return "";
+  }
+  static void make(DatasetDirectory& dataset, const DatasetTask& task = {}) {
+    for (std::size_t shard = 0; shard < plan().shards(); ++shard) {
+      if (!task.makes(shard)) continue;
+      for (std::uint64_t seed = plan().first_of(shard); seed <= plan().last_of(shard); ++seed)
+        dataset.write_sample(seed, {{.key = "k", .members = "", .coco_image = "{\"width\":1}"}});
+      dataset.assemble(shard);
+    }
+  }
+
+  const std::set<std::string> complete{".dataset-lock",      "coco.json",    "dataset-000000.tar",
+                                       "dataset-000001.tar", "dataset.json", "scenario.yaml"};
+  std::string directory;
+};
+
+TEST_F(DatasetDirectories, HaveTheFilesOfADataSet) {
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({}, false));
+  make(dataset);
+  EXPECT_EQ(dataset.finish(), 0u);
+  EXPECT_EQ(names(), complete);
+  EXPECT_EQ(text_of("scenario.yaml"), "# of one\n");
+  EXPECT_FALSE(open().begin({}, false));
+  EXPECT_EQ(refusal({}, false, "two"),
+            "contains another data set; --force replaces it, --out writes elsewhere");
+}
+
+TEST_F(DatasetDirectories, WithFilesThatAreOfNoDataSetAreRefused) {
+  for (const char* name : {"scenario.yaml", "coco.json", "dataset-000007.tar", "parts/my-file"}) {
+    write(name, "mine");
+    const auto before = names();
+    EXPECT_EQ(refusal(), std::string("contains ") + name +
+                             ", which is of no data set there; --force replaces files of such "
+                             "names, --out writes elsewhere");
+    EXPECT_EQ(names(), before);
+    EXPECT_EQ(text_of(name), "mine");
+    fs::remove(directory + "/" + name);
+  }
+  write("dataset-backup.tar", "mine");
+  write("train.yaml", "mine");
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(DatasetDirectories, ForceReplacesFilesWithNamesOfADataSetAndNoOthers) {
+  for (const char* name : {"scenario.yaml", "coco.json", "dataset-000007.tar",
+                           "dataset-000008.tar.partial", "parts/sample-3.tar"})
+    write(name, "old");
+  const std::set<std::string> own{"dataset-backup.tar", "dataset-1.tar", "notes/a", "parts/my-file",
+                                  "parts/sample-three.tar"};
+  for (const auto& name : own) write(name, "mine");
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({}, true));
+  EXPECT_FALSE(dataset.has_sample(3));
+  make(dataset);
+  EXPECT_EQ(dataset.finish(), 0u);
+  auto expected = complete;
+  expected.insert(own.begin(), own.end());
+  expected.insert({"notes", "parts"});
+  EXPECT_EQ(names(), expected);
+  for (const auto& name : own) EXPECT_EQ(text_of(name), "mine") << name;
+}
+
+TEST_F(DatasetDirectories, AreNotForcedWhileAProcessWorksInThem) {
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({.number = 1, .count = 2}, false));
+  make(dataset, {.number = 1, .count = 2});
+  const auto before = names();
+  for (const char* digest : {"one", "two"})
+    EXPECT_EQ(refusal({}, true, digest), "another process works in this directory");
+  EXPECT_EQ(names(), before);
+}
+
+TEST_F(DatasetDirectories, HaveTasksThatShareNoArchive) {
+  const DatasetTask first{.number = 1, .count = 2}, second{.number = 2, .count = 2};
+  std::optional<DatasetDirectory> dataset(open());
+  ASSERT_TRUE(dataset->begin(first, false));
+  EXPECT_EQ(refusal(first), "another process works on --shard 1/2");
+  EXPECT_EQ(refusal({}),
+            "other processes make this data set, with another n of --shard i/n, got 1/1");
+  EXPECT_EQ(refusal({.number = 3, .count = 3}),
+            "other processes make this data set, with another n of --shard i/n, got 3/3");
+  EXPECT_EQ(refusal(second), "");
+  dataset.reset();
+  EXPECT_EQ(refusal({}), "");  // continued with another number when none works
+}
+
+TEST_F(DatasetDirectories, BelongToOneOfTwoThatBeginTogether) {
+  for (int round = 0; round < 30; ++round) {
+    std::atomic<int> begun{0};
+    std::barrier together(2);
+    const auto task = [&](const char* digest, std::uint64_t number) {
+      DatasetDirectory dataset = open(digest);
+      together.arrive_and_wait();
+      try {
+        begun += dataset.begin({.number = number, .count = 2}, false);
+      } catch (const ConfigError&) {
+      }
+      together.arrive_and_wait();  // holds its locks until then
+    };
+    std::thread other(task, "two", 2);
+    task("one", 1);
+    other.join();
+    ASSERT_EQ(begun, 1) << round;
+    fs::remove_all(directory);
+  }
+}
+
+TEST_F(DatasetDirectories, EndWithTheLastTask) {
+  const DatasetTask first{.number = 1, .count = 2}, second{.number = 2, .count = 2};
+  DatasetDirectory one = open(), two = open();
+  ASSERT_TRUE(one.begin(first, false));
+  ASSERT_TRUE(two.begin(second, false));
+  make(one, first);
+  EXPECT_EQ(one.finish(), 1u);
+  make(two, second);
+  EXPECT_EQ(two.finish(), 0u);
+  EXPECT_TRUE(fs::exists(directory + "/dataset.json"));
+  EXPECT_EQ(one.finish(), 0u);
+  EXPECT_EQ(names(), complete);
+}
+
+TEST_F(DatasetDirectories, RefusePartsOfAnotherDataSet) {
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({}, false));
+  make(dataset);
+  open("two").write_sample(1, {{.key = "k", .members = "", .coco_image = "{}"}});
+  open("one").write_sample(2, {{.key = "k", .members = "", .coco_image = "{}"}});
+  EXPECT_THROW(dataset.assemble(0), Error);
+  const std::string part = directory + "/parts/dataset-000001.coco";
+  ASSERT_TRUE(fs::exists(part));
+  std::ofstream(part) << "dataset two\nimage {}\n";
+  EXPECT_THROW(dataset.finish(), Error);
+  EXPECT_FALSE(fs::exists(directory + "/dataset.json"));
+}
+
+}  // namespace
+}  // namespace dmise
