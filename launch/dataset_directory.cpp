@@ -31,9 +31,11 @@ constexpr std::int64_t directory_byte = 0;  // shared by tasks, alone to begin a
 constexpr std::int64_t finish_byte = 1;     // to write coco.json and dataset.json
 constexpr std::int64_t task_byte = 1;       // plus the number of the task, from 1
 
-void remove(const std::string& path) {
-  std::error_code ignored;
-  fs::remove(path, ignored);  // of directories only empty ones
+/// Removes a file. Throws `Error` if it is there and stays.
+void remove_file(const std::string& path) {
+  std::error_code failure;
+  fs::remove(path, failure);
+  if (failure) throw Error(path + ": can't be removed: " + failure.message());
 }
 
 bool is_directory(const std::string& path) {
@@ -194,18 +196,20 @@ std::string DatasetDirectory::file_of_no_dataset() const {
 
 void DatasetDirectory::clear() const {
   for (const char* name : {"/dataset.json", "/coco.json"}) {
-    remove(path_ + name);
-    remove(path_ + name + std::string(partial_ending));
+    remove_file(path_ + name);
+    remove_file(path_ + name + std::string(partial_ending));
   }
   for (const std::string& name : names_in(path_))
-    if (is_archive(name)) remove(path_ + "/" + name);
+    if (is_archive(name)) remove_file(path_ + "/" + name);
   remove_parts();
 }
 
 void DatasetDirectory::remove_parts() const {
   for (const std::string& name : names_in(path_ + "/parts"))
-    if (is_part(name)) remove(part(name));
-  if (is_directory(path_ + "/parts")) remove(path_ + "/parts");
+    if (is_part(name)) remove_file(part(name));
+  std::error_code ignored;
+  if (fs::symlink_status(path_ + "/parts", ignored).type() == fs::file_type::directory)
+    fs::remove(path_ + "/parts", ignored);  // if it is empty
 }
 
 bool DatasetDirectory::has_shard(std::size_t shard) const {
@@ -262,7 +266,7 @@ void DatasetDirectory::assemble(std::size_t shard) const {
   archive.finish(json);
   write_file_whole(part(shard_name(shard, ".json")), json.end_object().take());
   for (std::uint64_t seed = first; seed <= last; ++seed)
-    for (const char* ending : {".tar", ".coco"}) remove(part(sample_name(seed, ending)));
+    for (const char* ending : {".tar", ".coco"}) remove_file(part(sample_name(seed, ending)));
 }
 
 std::string DatasetDirectory::write_coco() const {

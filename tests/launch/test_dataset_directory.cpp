@@ -119,6 +119,12 @@ TEST_F(DatasetDirectories, ForceReplacesFilesWithNamesOfADataSetAndNoOthers) {
   for (const auto& name : own) EXPECT_EQ(text_of(name), "mine") << name;
 }
 
+TEST_F(DatasetDirectories, WithWhatCannotBeRemovedAreNotForced) {
+  write("coco.json/mine", "mine");
+  EXPECT_THROW(open().begin({}, true), Error);
+  EXPECT_EQ(text_of("coco.json/mine"), "mine");
+}
+
 TEST_F(DatasetDirectories, AreNotForcedWhileAProcessWorksInThem) {
   DatasetDirectory dataset = open();
   ASSERT_TRUE(dataset.begin({.number = 1, .count = 2}, false));
