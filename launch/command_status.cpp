@@ -211,12 +211,16 @@ void add_clock_command(CLI::App& app) {
       {"abort", {ClockAction::abort, "end the run at once"}}};
   for (const auto& [name, action] : actions) {
     auto options = std::make_shared<StatusOptions>();
-    options->request = {.action = action.first, .tick = action.first == ClockAction::step ? 1 : 0};
+    const bool steps = action.first == ClockAction::step;
+    options->request = {.action = action.first, .tick = steps ? 1 : 0};
     auto* verb = command->add_subcommand(name, action.second);
     add_master_option(*verb, "master", options->master)->required();
     verb->add_option("--keys", options->keys, "directory with operator.key");
-    verb->add_option("--tick", options->request.tick, "tick, or number of ticks");
-    verb->add_option("--reason", options->request.reason, "cause to record");
+    if (steps || action.first == ClockAction::pause)
+      verb->add_option("--tick", options->request.tick, steps ? "number of ticks" : "tick")
+          ->check(CLI::Range(Tick(steps), Tick(1) << 40));
+    if (action.first == ClockAction::end_early || action.first == ClockAction::abort)
+      verb->add_option("--reason", options->request.reason, "cause to record");
     verb->callback([options] { control(*options); });
   }
   add_pace_verb(*command);

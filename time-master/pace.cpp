@@ -42,6 +42,10 @@ void Pace::change(double factor, Tick next, Instant now) {
   schedule(next, part, now);
 }
 
+double Pace::wall_ns_per_tick() const {
+  return std::min(double(options_.tick_length.ns) / options_.factor, longest_wait_ns);
+}
+
 double Pace::part_until(Tick next, Instant now) const {
   if (!timed() || !epoch_) return 1.0;
   return std::clamp(double((due(next) - now).count()) / wall_ns_per_tick(), 0.0, 1.0);

@@ -51,7 +51,7 @@ class Pace {
   /// Part of a tick until `next` is due, [0, 1]; 1 if it is independent of real time.
   double part_until(Tick next, Instant now) const;
   void schedule(Tick next, double part, Instant now);
-  double wall_ns_per_tick() const { return double(options_.tick_length.ns) / options_.factor; }
+  double wall_ns_per_tick() const;
 
   PaceOptions options_;
   Tick anchor_tick_;

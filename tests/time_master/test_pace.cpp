@@ -118,6 +118,22 @@ TEST(PaceChange, AsFastAsPossibleAndBack) {
   EXPECT_EQ(master.pace().overruns(), 0u);
 }
 
+// Ticks that last longer than a clock can count are not due in this run.
+TEST(PaceChange, ToTheLeastFactorThatIsOne) {
+  for (const double factor : {1e-9, 1e-12, 1e-300, 5e-324}) {
+    Coordinator master = started(real_time(1.0, 4));
+    for (int times = 0; times < 3; ++times) master.change_pace(factor, seconds(12 + times));
+    const Tick granted = master.granted();
+    master.check(std::chrono::hours(10'000));
+    EXPECT_EQ(master.granted(), granted) << factor;
+    master.change_pace(1.0, std::chrono::hours(10'000));
+    master.check(std::chrono::hours(10'000) + seconds(6));
+    for (Tick tick = 0; tick <= granted; ++tick)
+      master.done("camera", tick, std::chrono::hours(10'000) + seconds(7));
+    EXPECT_GT(master.granted(), granted) << factor;
+  }
+}
+
 TEST(PaceChange, LeavesAPauseAsItIs) {
   Coordinator master = started(real_time(1.0, 4));
   master.pause();
