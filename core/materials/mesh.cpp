@@ -2,8 +2,74 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dmise {
+namespace {
+
+/// Points in a tree of boxes, each halved along its longest side.
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Vec<Body>> points) : points_(std::move(points)) {
+    if (!points_.empty()) add(0, points_.size());
+  }
+
+  /// Whether a point is farther than `height` along `normal`.
+  bool any_beyond(const Vec<Body>& normal, double height) const {
+    return !boxes_.empty() && any_beyond(normal, height, 0);
+  }
+
+ private:
+  static constexpr std::size_t leaf = 8;  // points
+  struct Box {
+    Vec<Body> low, high;
+    std::size_t begin, end;       // of its points
+    std::size_t right_child = 0;  // the left one follows; 0: a leaf
+  };
+
+  std::size_t add(std::size_t begin, std::size_t end) {
+    Box box{points_[begin], points_[begin], begin, end};
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec<Body>& p = points_[i];
+      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+    }
+    const std::size_t index = boxes_.size();
+    boxes_.push_back(box);
+    if (end - begin <= leaf) return index;
+    const Vec<Body> size = box.high - box.low;
+    const auto axis = size.x >= size.y && size.x >= size.z ? &Vec<Body>::x
+                      : size.y >= size.z                   ? &Vec<Body>::y
+                                                           : &Vec<Body>::z;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto first = points_.begin();
+    std::nth_element(first + std::ptrdiff_t(begin), first + std::ptrdiff_t(middle),
+                     first + std::ptrdiff_t(end),
+                     [&](const Vec<Body>& a, const Vec<Body>& b) { return a.*axis < b.*axis; });
+    add(begin, middle);
+    const std::size_t right = add(middle, end);
+    boxes_[index].right_child = right;
+    return index;
+  }
+
+  bool any_beyond(const Vec<Body>& normal, double height, std::size_t index) const {
+    const Box& box = boxes_[index];
+    const Vec<Body> farthest{normal.x > 0.0 ? box.high.x : box.low.x,
+                             normal.y > 0.0 ? box.high.y : box.low.y,
+                             normal.z > 0.0 ? box.high.z : box.low.z};
+    if (!(dot(normal, farthest) > height)) return false;
+    if (box.right_child > 0)
+      return any_beyond(normal, height, index + 1) || any_beyond(normal, height, box.right_child);
+    for (std::size_t i = box.begin; i < box.end; ++i)
+      if (dot(normal, points_[i]) > height) return true;
+    return false;
+  }
+
+  std::vector<Vec<Body>> points_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace
 
 Vec<Body> double_area_m2(const Mesh& mesh, const Mesh::Triangle& t) {
   const Vec<Body>& a = mesh.vertex_m[t.corner[0]];
@@ -24,11 +90,11 @@ double radius_m(const Mesh& mesh) {
 
 bool is_convex(const Mesh& mesh) {
   const double slack = 1e-9 * radius_m(mesh);
+  const BoxTree vertices(mesh.vertex_m);
   for (const auto& t : mesh.triangles) {
     const Vec<Body> normal = unit(double_area_m2(mesh, t));
     const double height = dot(normal, mesh.vertex_m[t.corner[0]]) + slack;
-    for (const auto& v : mesh.vertex_m)
-      if (dot(normal, v) > height) return false;
+    if (vertices.any_beyond(normal, height)) return false;
   }
   return true;
 }

@@ -57,6 +57,15 @@ TEST(Shapes, ThatHideNothingOfThemselvesAreKnownAsConvex) {
   EXPECT_FALSE(is_convex(box_wing({}, {}, {}, {})));
 }
 
+// Of the finest sphere too, which all pairs of facets and vertices would take half a minute for.
+TEST(Shapes, OfManyFacetsAreKnownAsConvexUpToASmallDent) {
+  Mesh fine = sphere(1, 200'000, {});
+  EXPECT_TRUE(is_convex(fine));
+  fine.vertex_m[54'321] = fine.vertex_m[54'321] * (1.0 - 1e-4);
+  EXPECT_FALSE(is_convex(fine));
+  EXPECT_FALSE(is_convex(merged(sphere(1, 2000, {}), moved(box({1, 1, 1}, {}), {0.0, 2.0, 0.3}))));
+}
+
 TEST(Shapes, OfNoSizeAreRefused) {
   EXPECT_THROW(box({0, 1, 1}, {}), Error);
   EXPECT_THROW(sphere(1, 19, {}), Error);
