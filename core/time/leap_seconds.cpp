@@ -45,11 +45,11 @@ const std::vector<LeapSecond>& table() {
 
 int tai_minus_utc_s(std::int64_t mjd) {
   const std::vector<LeapSecond>& rows = table();
-  if (mjd < rows.front().first_mjd)
+  if (mjd < rows.front().first_mjd - 1)
     throw Error("UTC before 1972-01-01 is not supported, got modified Julian day " +
                 std::to_string(mjd));
   std::size_t i = rows.size() - 1;
-  while (mjd < rows[i].first_mjd) --i;
+  while (i > 0 && mjd < rows[i].first_mjd) --i;
   return rows[i].tai_minus_utc_s;
 }
 

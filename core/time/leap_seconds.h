@@ -22,7 +22,8 @@ struct TaiInstant {
 };
 
 /// TAI - UTC on the UTC day `mjd` [s], from ERFA's table. Throws `Error` before 1972, when UTC was
-/// not yet kept in whole seconds.
+/// not yet kept in whole seconds; the last day of 1971 has the 10 s of the next, because rates at
+/// its end are taken from instants on both sides.
 int tai_minus_utc_s(std::int64_t mjd);
 
 /// Length of the UTC day `mjd` [s]: 86400, 86401 when it ends with a leap second.

@@ -21,7 +21,16 @@ TEST(LeapSeconds, AgreeWithTheHistoryOfTheIers) {
 }
 
 TEST(LeapSeconds, BeforeWholeSecondsWereKeptIsAnError) {
-  EXPECT_THROW(tai_minus_utc_s(41316), Error);
+  EXPECT_THROW(tai_minus_utc_s(41315), Error);
+}
+
+// Rates at the first instant are taken from instants on both sides of it.
+TEST(LeapSeconds, TheDayBeforeHasThoseOfTheFirst) {
+  EXPECT_EQ(tai_minus_utc_s(41316), 10);
+  EXPECT_EQ(utc_day_length_s(41316), 86400);
+  const TaiInstant first = to_tai({41317, 0});
+  EXPECT_EQ(to_utc({first.mjd, first.ns_of_day - 1'000'000'000}),
+            (UtcInstant{41316, 86'399'000'000'000}));
 }
 
 // Reference: ERFA 2.0 eraDat returns 1 for years that lie more than 5 years after its release.
