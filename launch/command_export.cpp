@@ -5,11 +5,14 @@
 #include <memory>
 #include <set>
 
+#include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
+#include "core/base/text_file.h"
 #include "core/base/whole_file.h"
+#include "core/config/object_names.h"
 #include "core/config/search_path.h"
 #include "core/exchange/export_format.h"
 #include "core/orbit/catalogue.h"
@@ -57,24 +60,41 @@ std::string path_of(const std::string& named) {
   return path;
 }
 
-bool is_wanted(const MeanElements& e, const std::vector<std::string>& only) {
-  const std::string number = std::to_string(e.catalogue_number);
-  return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& name) {
-           return name == number || name == e.name;
-         });
+/// Reads a catalogue of a run. Throws `ConfigError` if the file is not the one that the run read.
+CatalogueFile catalogue_of(const RunProducts& run, const RunCatalogue& catalogue) {
+  if (catalogue.sha256.empty())
+    throw ConfigError(run.directory +
+                      "/run.json: catalogue_sha256: is missing: the run was made by an earlier "
+                      "version (--catalogue FILE names its element sets)");
+  const std::string path = path_of(catalogue.named), text = read_text_file(path);
+  if (sha256_hex(text) != catalogue.sha256)
+    throw ConfigError(path +
+                      ": is not the file that the run read: its SHA-256 is not that in run.json "
+                      "(--catalogue FILE names another)");
+  return parse_catalogue(text, path);
 }
 
+/// Element sets of the objects, as the run takes them: of a number that of the scenario's own
+/// object, else of the first catalogue; number 0 does not identify an object.
 std::vector<MeanElements> elements_of(const RunProducts& run, const ExportOptions& options) {
   std::vector<MeanElements> all;
-  std::set<std::pair<std::uint32_t, std::string>> seen;
-  const auto& given = options.catalogues;
-  for (std::size_t i = 0; i < (given.empty() ? run.catalogues : given).size(); ++i) {
-    const auto file = read_catalogue(given.empty() ? path_of(run.catalogues[i]) : given[i]);
-    for (const MeanElements& e : file.elements) {
-      if (!is_wanted(e, given.empty() ? run.only[i] : std::vector<std::string>{})) continue;
-      if (seen.emplace(e.catalogue_number, e.name).second) all.push_back(e);
+  std::set<std::uint32_t> taken;
+  for (const RunObject& object : run.own_objects) taken.insert(object.catalogue_number);
+  const auto add = [&](CatalogueFile file, const std::vector<std::string>& only) {
+    for (MeanElements& e : file.elements) {
+      e.name = printable(e.name);
+      if (!only.empty() &&
+          std::ranges::none_of(only, [&](auto& name) { return is_called(e, name); }))
+        continue;
+      if (e.catalogue_number == 0 || taken.insert(e.catalogue_number).second) all.push_back(e);
     }
-  }
+  };
+  for (const std::string& path : options.catalogues) add(read_catalogue(path), {});
+  if (options.catalogues.empty())
+    for (const RunCatalogue& catalogue : run.catalogues)
+      add(catalogue_of(run, catalogue), catalogue.only);
+  for (const RunObject& object : run.own_objects)
+    if (object.elements) all.push_back(*object.elements);
   return all;
 }
 
@@ -89,6 +109,12 @@ void write(const ExportedFile& file, const fs::path& path) {
 }
 
 fs::path export_kind(const ExportOptions& options, const ExportFormat& format, ProductKind kind) {
+  std::error_code unknown;
+  const bool is_file = fs::path(format.file).has_extension();
+  if (fs::exists(options.out, unknown) && fs::is_directory(options.out, unknown) == is_file)
+    throw ConfigError(std::string("--out: ") + format.name + " is written to a " +
+                      (is_file ? "file, got the directory " : "directory, got the file ") +
+                      printable(options.out));
   Progress progress;
   const RunProducts run =
       read_products(options.run,

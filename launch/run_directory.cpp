@@ -57,7 +57,10 @@ RunDirectory::RunDirectory(std::string path, const Scenario& scenario, std::stri
     : path_(std::move(path)),
       scenario_(scenario),
       digest_(std::move(digest)),
-      lock_(lock_directory(path_)) {}
+      lock_(lock_directory(path_)) {
+  for (const auto& source : scenario_.objects)
+    catalogue_sha256_.push_back(sha256_hex(read_text_file(source.path)));
+}
 
 RunDirectory::Content RunDirectory::content() const {
   if (!path_exists(file("run.json"))) {

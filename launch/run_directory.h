@@ -17,6 +17,8 @@ class RunDirectory {
 
   const std::string& path() const { return path_; }
   const std::string& digest() const { return digest_; }
+  /// Of the texts of the scenario's catalogues, as they were when this object was made.
+  const std::vector<std::string>& catalogue_sha256() const { return catalogue_sha256_; }
   RunLock& lock() { return *lock_; }
 
   enum class Content { empty, same_run_complete, same_run_unfinished, another_run };
@@ -35,6 +37,7 @@ class RunDirectory {
   std::string path_;
   const Scenario& scenario_;
   std::string digest_;
+  std::vector<std::string> catalogue_sha256_;
   std::unique_ptr<RunLock> lock_;
 };
 

@@ -33,6 +33,7 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
   if (!outcome.reason.empty()) json.field("reason", outcome.reason);
   json.field("software", software_name()).field("digest", directory.digest());
   json.field("seed", scenario.seed).field("wall_s", outcome.wall_s);
+  json.list("catalogue_sha256", directory.catalogue_sha256());
   write_interpolation(json, scenario);
   json.key("scenario").raw(physics_json(scenario));
   json.key("nodes").begin_array();

@@ -96,11 +96,16 @@ class Loader {
            " (left out)");
     for (const auto& problem : catalogue.refused) note(catalogue.describe(problem) + " (left out)");
     for (const auto& problem : catalogue.warnings) note(catalogue.describe(problem));
+    int of_earlier = 0;
+    std::string first;
     for (const auto& e : catalogue.elements) {
+      if (!wanted(source, e)) continue;
       // Number 0 (not catalogued) does not identify an object.
-      if (!wanted(source, e) ||
-          (e.catalogue_number != 0 && !taken_.insert(e.catalogue_number).second))
+      if (e.catalogue_number != 0 && !taken_.insert(e.catalogue_number).second) {
+        if (is_own(e.catalogue_number)) continue;
+        if (of_earlier++ == 0) first = std::to_string(e.catalogue_number) + " " + e.name;
         continue;
+      }
       const auto known = facts.facts.find(e.catalogue_number);
       const DiffuseSphere sphere = known == facts.facts.end()
                                        ? source.sphere
@@ -112,6 +117,15 @@ class Loader {
                                             .element_age_s = aged(element_age_days(e, start_))});
       population_.elements.push_back(e);
     }
+    if (of_earlier > 0)
+      note(source.path + ": " + std::to_string(of_earlier) +
+           (of_earlier == 1 ? " element set" : " element sets") +
+           " left out: catalogues listed before have the numbers; first " + first);
+  }
+
+  bool is_own(std::uint32_t number) const {
+    return std::ranges::any_of(scenario_.own_objects,
+                               [&](const auto& o) { return o.catalogue_number == number; });
   }
 
   void add(const OwnObject& object, double age_days) {

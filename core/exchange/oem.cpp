@@ -85,11 +85,7 @@ std::string run_oem_text(const ExportRequest& request) {
   if (request.kind == ProductKind::tracks) {
     for (auto& [id, object] : track_ephemerides(run)) ephemerides.push_back(std::move(object));
   } else {
-    for (const Truth& t : run.truths)
-      if (t.true_position_m == Vec<Gcrs>{})
-        throw ConfigError(run.directory +
-                          "/truth.jsonl: true_position_gcrs_m: is missing: the run was made by an "
-                          "earlier version");
+    for (const Truth& t : run.truths) require_states(run, t);
     ephemerides = truth_ephemerides(run);
   }
   if (ephemerides.empty()) fail_empty(run, "an OEM", request.kind);

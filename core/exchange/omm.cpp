@@ -105,7 +105,7 @@ std::string omm_text(const ExportRequest& request) {
     return head + messages_of_tracks(request.run) + "</ndm>\n";
   if (request.elements.empty())
     throw ConfigError(request.run.directory +
-                      "/run.json: the scenario has no element sets to export: an OMM needs one");
+                      "/run.json: no object of the scenario has an element set: an OMM needs one");
   std::string text = head;
   for (const MeanElements& e : request.elements) text += message(request.run, e);
   return text + "</ndm>\n";

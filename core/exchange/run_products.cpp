@@ -1,5 +1,6 @@
 #include "core/exchange/run_products.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -36,6 +37,8 @@ RunSensor sensor_of(const JsonRecord& record, const Ellipsoid& ellipsoid) {
   sensor.columns = camera.columns;
   sensor.rows = camera.rows;
   sensor.psf_fwhm_px = *camera.sigma_px * fwhm_per_sigma;
+  const auto effects = record.texts("effects");
+  sensor.light_time = std::ranges::find(effects, "light_time") != effects.end();
   return sensor;
 }
 
@@ -62,12 +65,38 @@ RunFrame frame_of(const JsonRecord& report, const RunSensor& sensor) {
   return f;
 }
 
-void read_catalogues(const JsonRecord& scenario, RunProducts& run) {
-  for (const JsonRecord& object : scenario.objects("objects")) {
-    if (!object.has("catalogue")) continue;
-    run.catalogues.push_back(object.get<std::string>("catalogue"));
-    run.only.push_back(object.texts("only"));
+/// Elements of an object of the scenario; run.json has no more of its element set.
+MeanElements elements_of(const JsonRecord& object) {
+  const auto v = object.numbers<9>("sgp4");
+  return {.catalogue_number = object.get<std::uint32_t>("catalogue_number"),
+          .name = object.get<std::string>("name"),
+          .epoch_jd1 = v[0],
+          .epoch_jd2 = v[1],
+          .mean_motion_rad_per_min = v[2],
+          .eccentricity = v[3],
+          .inclination_rad = v[4],
+          .raan_rad = v[5],
+          .argument_of_perigee_rad = v[6],
+          .mean_anomaly_rad = v[7],
+          .bstar_per_earth_radius = v[8]};
+}
+
+void read_objects(const JsonRecord& record, RunProducts& run) {
+  for (const JsonRecord& object : record.object("scenario").objects("objects")) {
+    if (object.has("catalogue"))
+      run.catalogues.push_back({.named = object.get<std::string>("catalogue"),
+                                .only = object.texts("only"),
+                                .sha256 = ""});
+    else
+      run.own_objects.push_back(
+          {.catalogue_number = object.get<std::uint32_t>("catalogue_number"),
+           .elements = object.has("sgp4") ? std::optional(elements_of(object)) : std::nullopt});
   }
+  if (!record.has("catalogue_sha256")) return;
+  const auto digests = record.texts("catalogue_sha256");
+  if (digests.size() != run.catalogues.size())
+    record.fail("catalogue_sha256", "is not one for each catalogue of the scenario");
+  for (std::size_t i = 0; i < digests.size(); ++i) run.catalogues[i].sha256 = digests[i];
 }
 
 std::string existing(const std::string& directory, const char* name, const char* without) {
@@ -106,10 +135,19 @@ std::map<std::uint32_t, const Track*> RunProducts::confirmed_tracks() const {
 
 std::string track_name(const Track& track) { return "TRACK " + std::to_string(track.id); }
 
+void require_states(const RunProducts& run, const Truth& truth) {
+  if (truth.true_position_m == Vec<Gcrs>{})
+    throw ConfigError(run.directory +
+                      "/truth.jsonl: true_position_gcrs_m: is missing: the run was made by an "
+                      "earlier version");
+}
+
 RunProducts read_products(const std::string& directory, const WantedProducts& wanted,
                           const ReadProgress& progress) {
   const std::string path = existing(directory, "run.json", "no run, or one that has not ended");
   const JsonRecord record(read_text_file(path), path);
+  if (record.has("status") && record.get<std::string>("status") == "begun")
+    record.fail("status", "the run has not ended, or was refused at its start: got begun");
   const JsonRecord scenario = record.object("scenario");
   RunProducts run{
       .directory = directory,
@@ -120,7 +158,7 @@ RunProducts read_products(const std::string& directory, const WantedProducts& wa
   const Ellipsoid ellipsoid = ellipsoid_of(scenario);
   for (const JsonRecord& sensor : scenario.objects("sensors"))
     run.sensors.push_back(sensor_of(sensor, ellipsoid));
-  read_catalogues(scenario, run);
+  read_objects(record, run);
   if (!wanted.sensor.empty()) run.sensor(wanted.sensor);
   const auto is_wanted = [&](const JsonRecord& line) {
     return wanted.sensor.empty() || line.get<std::string>("sensor") == wanted.sensor;

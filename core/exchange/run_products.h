@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/frames/geodesy.h"
+#include "core/orbit/elements.h"
 #include "core/products/detection.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
@@ -24,6 +25,7 @@ struct RunSensor {
   std::string platform;  // of one in orbit: the object that carries it
   int columns = 0, rows = 0;
   double psf_fwhm_px = 0.0;  // of the camera; a frame may have measured another
+  bool light_time = true;    // whether objects are seen where they were when the light left
 };
 
 /// A frame, as its line in frames.jsonl reports it.
@@ -40,6 +42,19 @@ struct RunFrame {
   double exposure_s() const { return (end - start).seconds(); }
 };
 
+/// A catalogue of a run.
+struct RunCatalogue {
+  std::string named;              // as in the scenario
+  std::vector<std::string> only;  // numbers or names; empty: all
+  std::string sha256;             // of its text; empty in runs of earlier versions
+};
+
+/// An object of the scenario itself.
+struct RunObject {
+  std::uint32_t catalogue_number = 0;
+  std::optional<MeanElements> elements;  // if it moves by SGP4
+};
+
 /// The products of a run that has ended, to be exported.
 struct RunProducts {
   std::string directory;
@@ -47,12 +62,12 @@ struct RunProducts {
   std::uint64_t seed = 0;
   Clock clock;
   std::vector<RunSensor> sensors;
-  std::vector<RunFrame> frames;                // by time, sensor and index
-  std::vector<Truth> truths;                   // if they were asked for, in the same order
-  std::vector<Detection> detections;           // likewise
-  std::vector<Track> tracks;                   // likewise, by time and id
-  std::vector<std::string> catalogues;         // of element sets, as the scenario names them
-  std::vector<std::vector<std::string>> only;  // of each: numbers or names; empty: all
+  std::vector<RunFrame> frames;          // by time, sensor and index
+  std::vector<Truth> truths;             // if they were asked for, in the same order
+  std::vector<Detection> detections;     // likewise
+  std::vector<Track> tracks;             // likewise, by time and id
+  std::vector<RunCatalogue> catalogues;  // in the scenario's order
+  std::vector<RunObject> own_objects;    // likewise
 
   /// "2018-01-21T00:15:10.000000000Z"
   std::string utc(SimTime t) const;
@@ -71,6 +86,9 @@ struct RunProducts {
 
 /// "TRACK 3", by which messages name a track.
 std::string track_name(const Track& track);
+
+/// Throws `ConfigError` if an earlier version wrote a line of truth without the object's state.
+void require_states(const RunProducts& run, const Truth& truth);
 
 /// What is read of a run.
 struct WantedProducts {

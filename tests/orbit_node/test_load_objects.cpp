@@ -53,6 +53,19 @@ TEST_F(ObjectPopulationTest, CataloguesComeFirstThenElementsThenTheOtherModels) 
   EXPECT_EQ(p.attitudes[0].object, 2u);
 }
 
+TEST_F(ObjectPopulationTest, AnObjectOfTwoCataloguesIsTheFirstOnesAndANoteSaysSo) {
+  write("newer.tle",
+        "NEWER\n"
+        "1 29155U 06018A   18021.00000000 -.00000277  00000-0  00000+0 0  9995\n"
+        "2 29155   0.3033 103.4554 0011344  94.0749 132.0880  1.00469224 42737\n");
+  const auto p = population("  - {catalogue: goes.tle}\n  - {catalogue: newer.tle}\n");
+  ASSERT_EQ(p.roster.objects.size(), 1u);
+  EXPECT_EQ(p.roster.objects[0].name, "GOES 13");
+  ASSERT_EQ(p.notes.size(), 1u);
+  EXPECT_THAT(p.notes[0], HasSubstr("newer.tle: 1 element set left out: catalogues listed before "
+                                    "have the numbers; first 29155 NEWER"));
+}
+
 TEST_F(ObjectPopulationTest, OnesOwnObjectTakesThePlaceOfACataloguesWithItsNumber) {
   const std::string own = "motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n";
   const auto p = population(
