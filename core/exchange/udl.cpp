@@ -51,9 +51,34 @@ void write(const RunProducts& run, const Detection& d, JsonWriter& json) {
   json.end_object();
 }
 
+struct SensorState {
+  Vec<Gcrs> position_m, velocity_m_per_s;
+};
+
+/// Returns the sensor at the true middle of an exposure. A frame reports it at the middle by the
+/// sensor's clock, for all rows at once; if an object's is another, its truth is followed
+/// backwards: its light came from where it was a light time before, on a straight path, as truth
+/// has it.
+SensorState true_state(const RunProducts& run, const RunFrame& frame, const Truth& t) {
+  const double late_s = (t.middle - frame.middle).seconds();
+  if (late_s == 0.0) return {frame.sensor_position_m, frame.sensor_velocity_m_per_s};
+  require_states(run, t);
+  Vec<Gcrs> line = from_spherical<Gcrs>(t.true_ra_rad, t.true_dec_rad);
+  if (run.sensor(t.sensor).light_time)
+    line += t.true_velocity_m_per_s * (1.0 / speed_of_light_m_per_s);
+  const Vec<Gcrs> position_m = t.true_position_m - unit(line) * t.true_range_m;
+  // Of a constant acceleration between the two times. Within a millisecond a sensor in orbit gains
+  // less than 0.01 m/s, and the difference of the positions says no more.
+  constexpr double shortest_s = 1e-3;
+  if (std::abs(late_s) < shortest_s) return {position_m, frame.sensor_velocity_m_per_s};
+  return {position_m,
+          (position_m - frame.sensor_position_m) * (2.0 / late_s) - frame.sensor_velocity_m_per_s};
+}
+
 void write(const RunProducts& run, const Truth& t, JsonWriter& json) {
   const RunFrame& frame = run.frame(t.sensor, t.frame);
-  begin(run, frame, t.middle, frame.sensor_position_m, frame.sensor_velocity_m_per_s, json);
+  const SensorState sensor = true_state(run, frame, t);
+  begin(run, frame, t.middle, sensor.position_m, sensor.velocity_m_per_s, json);
   angles(t.true_ra_rad, t.true_dec_rad, false, json);
   json.field("range", t.true_range_m / km).field("rangeMeasured", false);
   if (run.sensor(t.sensor).site) json.field("elevation", t.true_elevation_rad / deg);

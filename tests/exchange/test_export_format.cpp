@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -67,6 +68,44 @@ TEST(ExportFormat, UdlHasDegreesAndKilometres) {
   EXPECT_NEAR(t["range"].get<double>(), 500.0, 1e-12);
   EXPECT_EQ(t["penumbra"], true);
   EXPECT_EQ(t["satNo"], 25544);
+}
+
+// A sensor whose clock is half a second slow, on the ground and in orbit: senx and senvelx are of
+// obTime, as the object's direction and range. The frame has them at the sensor's own middle.
+TEST(ExportFormat, UdlOfTruthHasTheSensorAtTheTrueTime) {
+  for (const double radius_m : {6.37e6, 7e6})
+    for (const bool light_time : {true, false}) {
+      const double rate =
+          radius_m < 6.5e6 ? 7.292115e-5 : std::sqrt(3.986e14 / std::pow(radius_m, 3));
+      const auto at = [&](double t_s) {
+        return Vec<Gcrs>{radius_m * std::cos(rate * t_s), radius_m * std::sin(rate * t_s), 0};
+      };
+      const auto going = [&](double t_s) {
+        return Vec<Gcrs>{-radius_m * rate * std::sin(rate * t_s),
+                         radius_m * rate * std::cos(rate * t_s), 0};
+      };
+      RunProducts run = run_with_truth();
+      run.sensors[0].light_time = light_time;
+      run.frames[0].sensor_position_m = at(0.0);
+      run.frames[0].sensor_velocity_m_per_s = going(0.0);
+      Truth& t = run.truths[0];
+      t.middle = run.frames[0].middle + sim_seconds(0.5);
+      t.true_position_m = {7.3e6, 1e6, 8e5};
+      t.true_velocity_m_per_s = {1e3, -6e3, 4e3};
+      const Vec<Gcrs> line = t.true_position_m - at(0.5);
+      t.true_range_m = norm(line);
+      Vec<Gcrs> seen = line;
+      for (int i = 0; light_time && i < 3; ++i)
+        seen = line - t.true_velocity_m_per_s * (norm(seen) / speed_of_light_m_per_s);
+      const auto [ra, dec] = to_spherical(seen);
+      t.true_ra_rad = ra, t.true_dec_rad = dec;
+      const Json r = Json::parse(exported("udl", {run, ProductKind::truth, {}})[0].content)[0];
+      EXPECT_EQ(r["obTime"], "2018-01-21T00:15:01.500000Z");
+      const Vec<Gcrs> p{r["senx"].get<double>(), r["seny"].get<double>(), r["senz"].get<double>()},
+          v{r["senvelx"].get<double>(), r["senvely"].get<double>(), r["senvelz"].get<double>()};
+      EXPECT_LT(norm(p * km - at(0.5)), 1e-5) << radius_m;
+      EXPECT_LT(norm(v * km - going(0.5)), 1e-3) << radius_m;  // in orbit it gains 4 m/s
+    }
 }
 
 TEST(ExportFormat, OmmIsInDegreesAndRevolutions) {
