@@ -12,6 +12,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t most_bytes = 4u << 20;
+constexpr double narrowest_m = 1e-18;  // of a box: its ends still differ
 
 Curve curve_beside(const YamlValue& value) {
   const std::string path = value.existing_file();
@@ -46,7 +47,7 @@ const Section& band_section() {
        optional("name", form::text(), "Name of the band in products. By default the filter's."),
        optional("centre_m", form::number(0.1e-6, 30e-6),
                 "Middle of the box [m]; needed without a filter."),
-       optional("width_m", form::above(0.0, 60e-6),
+       optional("width_m", form::number(narrowest_m, 60e-6),
                 "Width of the box [m], at most twice its centre; needed without a filter.")}};
   return section;
 }
@@ -68,7 +69,7 @@ Band read_band(const YamlValue& value) {
   const auto name = map.find("name");
   band.name = name ? name->text() : "V";
   band.centre_m = map.number("centre_m");
-  band.width_m = map.number("width_m", Bounds::above(0.0, 2 * band.centre_m));
+  band.width_m = map.number("width_m", Bounds::between(narrowest_m, 2 * band.centre_m));
   map.done();
   return band;
 }

@@ -1,11 +1,13 @@
 #include "core/config/camera_config.h"
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/config/band_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/exclusion_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/plausibility.h"
+#include "core/optics/psf_table.h"
 #include "core/photometry/magnitude.h"
 
 namespace dmise {
@@ -21,6 +23,18 @@ void apply_quantum_efficiency(const YamlValue& value, Camera& camera) {
   } catch (const Error& e) {
     value.fail(e.what());
   }
+}
+
+/// Of the band as the detector sees it.
+void check_blur(const YamlValue& optics, const Camera& camera) {
+  const double sigma_px = psf_sigma_px(camera.optics, camera.band.centre_m);
+  if (sigma_px > widest_sigma_px)
+    YamlMap(optics)
+        .require("aperture_m")
+        .fail(formatted(
+            "diffraction with this focal length and pixel pitch blurs to a sigma of %.3g px, "
+            "more than %g",
+            sigma_px, widest_sigma_px));
 }
 
 /// Of the band as the detector sees it.
@@ -67,6 +81,7 @@ Camera read_camera(const YamlValue& value) {
   camera.band = read_band(map.require("band"));
   if (const auto efficiency = YamlMap(map.require("detector")).find("quantum_efficiency"))
     apply_quantum_efficiency(*efficiency, camera);
+  check_blur(map.require("optics"), camera);
   if (const auto system = map.find("magnitude_system")) read_magnitude_system(*system, camera);
   if (const auto exclusion = map.find("exclusion")) camera.exclusion = read_exclusion(*exclusion);
   camera.warnings = unusual_camera_values(value, camera);

@@ -288,16 +288,25 @@ std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const Effe
 }
 
 std::string effects_markdown() {
+  std::vector<std::string> never_off;
+  for (const EffectFacts* effect : all_effects())
+    if (effect->switchable && !effect->can_be_off())
+      never_off.push_back("`" + std::string(effect->name) + "`");
   std::string text =
       "# Effects\n\n"
       "Written by `dmise list effects > docs/models/effects.md`, in the order in which they run.\n"
-      "Each can be switched in a scenario, `effects: {NAME: off}`, for all sensors or one, but "
-      "for\n"
+      "Each can be switched in a scenario, `effects: {NAME: off}`, for all sensors or one, or set "
+      "to\n"
+      "a level, `{stars: v9}`; without levels it is off or on. These have levels alone and can't "
+      "be\n"
+      "off: " +
+      joined(never_off) +
+      ".\n"
       "`streak` (`integration: analytic | snapshots`, `snapshots: N`) and `evaluator` (`analytic "
       "|\n"
-      "opengl`), which have other choices, or set to a level, `{stars: v9}`; without levels it is\n"
-      "off or on. `dmise check` shows which may run and with what, `dmise explain` which do and "
-      "why.\n\n"
+      "opengl`) have other choices. `dmise check` shows which may run and with what, `dmise "
+      "explain`\n"
+      "which do and why.\n\n"
       "| effect | what it does | left out | source | levels | parameters |\n"
       "|---|---|---|---|---|---|\n";
   for (const EffectFacts* effect : all_effects()) {

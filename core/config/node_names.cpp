@@ -12,8 +12,9 @@ namespace {
 constexpr std::size_t longest = 64;
 
 // Names of other members of the network, and of directories of runs and keys.
-constexpr std::string_view members[] = {"time-master", "broker", "operator", "host-agent"};
-constexpr std::string_view directories[] = {"logs", "positions", "rings"};
+constexpr std::string_view members[] = {"time-master", "broker", "operator", "host-agent",
+                                        "gateway"};
+constexpr std::string_view directories[] = {"logs", "positions", "rings", "export"};
 
 bool is_member(const std::string& name) {
   return std::ranges::find(members, name) != std::end(members) ||

@@ -18,7 +18,8 @@ const Section& distortion_section() {
     for (const Projection::Row& row : Projection::rows())
       for (const ProjectionCoefficient& k : row.coefficients) {
         std::string what = sentence_of(k.comment);
-        what.insert(what.size() - 1, std::string(", with `") + row.name + "`");
+        what.insert(what.size() - 1, ", " + shortest_text(-k.most) + " to " +
+                                         shortest_text(k.most) + " with `" + row.name + "`");
         const auto known = std::find_if(made.keys.begin(), made.keys.end(),
                                         [&](const Key& key) { return key.name == k.key; });
         if (known == made.keys.end()) {
@@ -71,6 +72,9 @@ const Section& grid_section() {
        required("rows", form::integer(1, 9), "Kernels along a column.")}};
   return section;
 }
+
+/// Lengths that leave all that is computed from them finite.
+Forms length() { return form::number(1e-12, 1e6); }
 
 std::vector<std::string> projection_names() {
   std::vector<std::string> names;
@@ -197,12 +201,12 @@ const Section& optics_section() {
                   "Coefficients of a projection that has some."),
          required("columns", form::integer(1, 32768), "Pixels along a row."),
          required("rows", form::integer(1, 32768), "Pixels along a column."),
-         required("pixel_pitch_m", form::positive(), "Distance between pixels [m]."),
-         optional("focal_length_m", form::positive(), "Focal length [m]."),
+         required("pixel_pitch_m", length(), "Distance between pixels [m]."),
+         optional("focal_length_m", length(), "Focal length [m]."),
          optional("field_of_view_deg", form::above(0.0, 360.0),
                   "Field across the columns [deg], in place of the focal length. The projection "
                   "limits it further."),
-         required("aperture_m", form::positive(), "Diameter of the entrance pupil [m]."),
+         required("aperture_m", length(), "Diameter of the entrance pupil [m]."),
          optional("obscuration", form::number(0.0, 0.99),
                   "Diameter of the secondary in that of the primary.", "0"),
          optional("transmission", form::above(0.0, 1.0),

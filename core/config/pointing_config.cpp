@@ -81,14 +81,12 @@ const Section& cued_section() {
        optional("mount", form::choice({"great_circle", "altazimuth"}),
                 "Whether the mount slews along a great circle, or about azimuth and elevation.",
                 "great_circle"),
-       optional(
-           "azimuth_deg_per_s", form::above(0.0, 360.0),
-           "Fastest turn in azimuth [deg/s], of an altazimuth mount; by default as in elevation.",
-           shortest_text(CueSettings().azimuth_deg_per_s)),
+       optional("azimuth_deg_per_s", form::above(0.0, 360.0),
+                "Fastest turn in azimuth [deg/s], of an altazimuth mount.", "slew_deg_per_s"),
        optional("azimuth_deg_per_s2", form::number(0.0, 1000.0),
                 "Acceleration in azimuth [deg/s^2], of an altazimuth mount. 0: it has its speed at "
                 "once.",
-                shortest_text(CueSettings().azimuth_deg_per_s2)),
+                "slew_deg_per_s2"),
        optional("azimuth_range_deg", form::numbers(2, -3600.0, 3600.0),
                 "Least and greatest azimuth that cables allow [deg], of an altazimuth mount.",
                 "[-270, 270]"),
@@ -187,7 +185,7 @@ PointScan read_scan(const YamlValue& value, bool on_ground) {
 
 PointCued read_cued(const YamlValue& value) {
   PointCued cued{.where = value.place()};
-  if (value.is_scalar() && value.flag()) return cued;
+  if (value.is_scalar()) return cued;  // on
   YamlMap map(value, cued_section());
   if (const auto park = map.find("park")) {
     YamlMap place(*park, park_section());
@@ -203,8 +201,12 @@ PointCued read_cued(const YamlValue& value) {
   for (const char* key : {"azimuth_deg_per_s", "azimuth_deg_per_s2", "azimuth_range_deg"})
     if (const auto axis = map.find(key); axis && c.mount != MountKind::altazimuth)
       axis->fail("is of an altazimuth mount; set mount: altazimuth", false);
-  c.azimuth_deg_per_s = map.number_or("azimuth_deg_per_s", c.azimuth_deg_per_s);
-  c.azimuth_deg_per_s2 = map.number_or("azimuth_deg_per_s2", c.azimuth_deg_per_s2);
+  const auto in_azimuth = [&](const char* key, double in_elevation) {
+    const auto value = map.find(key);
+    return value ? value->number() : in_elevation;
+  };
+  c.azimuth_deg_per_s = in_azimuth("azimuth_deg_per_s", c.slew_deg_per_s);
+  c.azimuth_deg_per_s2 = in_azimuth("azimuth_deg_per_s2", c.slew_deg_per_s2);
   if (const auto range = map.find("azimuth_range_deg")) {
     const auto limits = range->numbers();
     if (!(limits[0] < limits[1])) range->fail("must rise");
@@ -285,7 +287,9 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
   const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
   const bool sky = map.find("ra_deg") || map.find("dec_deg");
   const auto target = map.find("target"), body = map.find("body"), scan = map.find("scan"),
-             cued = map.find("cued"), enu = map.find("enu");
+             enu = map.find("enu");
+  auto cued = map.find("cued");
+  if (cued && cued->is_scalar() && !cued->flag()) cued.reset();
   const int kinds = int(horizon) + int(sky) + int(bool(target)) + int(bool(body)) +
                     int(bool(scan)) + int(bool(cued)) + int(bool(enu));
   if (kinds > 1)

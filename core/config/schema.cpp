@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "core/base/formatted.h"
@@ -51,6 +50,12 @@ bool has(const Forms& forms, Kind kind) {
   return std::any_of(forms.begin(), forms.end(), [&](const Form& f) { return f.kind == kind; });
 }
 
+bool has_choice(const Forms& forms, const std::string& word) {
+  return std::any_of(forms.begin(), forms.end(), [&](const Form& f) {
+    return f.kind == Kind::choice && std::ranges::find(f.words, word) != f.words.end();
+  });
+}
+
 /// Writes JSON Schema. Values of a file that draws may be distributions as well.
 class SchemaWriter {
  public:
@@ -96,7 +101,7 @@ class SchemaWriter {
       json_.field("default", key.otherwise == "on");
     } else if (is_number(key.otherwise)) {
       json_.key("default").raw(key.otherwise);
-    } else if (has(key.forms, Kind::choice) && !key.otherwise.empty()) {
+    } else if (has_choice(key.forms, key.otherwise)) {
       json_.field("default", key.otherwise);
     }
     forms(key.forms);
@@ -203,11 +208,8 @@ std::string escaped(std::string text) {
 std::string quoted(const std::string& word) { return "`" + word + "`"; }
 
 std::string range_text(const Form& form) {
-  if (form.kind == Kind::integer) {
-    const bool open = form.most == std::numeric_limits<std::int64_t>::max();
-    return open ? " >= " + std::to_string(form.least)
-                : " " + std::to_string(form.least) + " to " + std::to_string(form.most);
-  }
+  if (form.kind == Kind::integer)
+    return " " + std::to_string(form.least) + " to " + std::to_string(form.most);
   const bool least = std::isfinite(form.bounds.least), most = std::isfinite(form.bounds.most);
   const std::string from = shortest_text(form.bounds.least), to = shortest_text(form.bounds.most);
   if (least && most && !form.bounds.least_open) return " " + from + " to " + to;

@@ -22,6 +22,12 @@ namespace {
   throw std::logic_error("core/config: the section says nothing of " + what);
 }
 
+/// Whether a section names a key, which its reader did not ask for beside the others that are
+/// given.
+bool names(const Section* section, const std::string& key) {
+  return section && std::ranges::find(section->keys, key, &Key::name) != section->keys.end();
+}
+
 /// Path of a value in its file; formatted only for messages, because keys may be long.
 struct NodePath {
   const NodePath* outer = nullptr;  // null: the file itself
@@ -138,9 +144,11 @@ std::int64_t YamlValue::integer(std::int64_t least, std::int64_t most) const {
   const std::string& s = node_.Scalar();
   std::int64_t x = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
-  if (error != std::errc{} || end != s.data() + s.size()) fail("must be a whole number");
-  if (x < least) fail("must be >= " + std::to_string(least));
-  if (x > most) fail("must be <= " + std::to_string(most));
+  const bool too_long = error == std::errc::result_out_of_range;
+  if ((error != std::errc{} && !too_long) || end != s.data() + s.size())
+    fail("must be a whole number");
+  if (too_long ? s.front() == '-' : x < least) fail("must be >= " + std::to_string(least));
+  if (too_long || x > most) fail("must be <= " + std::to_string(most));
   return x;
 }
 
@@ -274,7 +282,8 @@ YamlValue YamlMap::require(std::string_view key) {
   // A suggestion for a misspelt key is better than "is missing".
   for (const auto& entry : value_.node_) {
     const std::string name = entry.first.Scalar();
-    if (!known_.contains(name) && nearest_name(name, {std::string(key)}) == key)
+    if (!known_.contains(name) && !names(section_, name) &&
+        nearest_name(name, {std::string(key)}) == key)
       YamlValue(entry.first, value_.file_, child_path(name))
           .fail("unknown key, did you mean " + std::string(key) + "?", false);
   }
@@ -335,8 +344,9 @@ void YamlMap::done() const {
   for (const auto& entry : value_.node_) {
     const std::string name = entry.first.Scalar();
     if (known_.contains(name)) continue;
-    const std::string hint = did_you_mean(name, {known_.begin(), known_.end()});
-    YamlValue(entry.first, value_.file_, child_path(name)).fail("unknown key" + hint, false);
+    const YamlValue key(entry.first, value_.file_, child_path(name));
+    if (names(section_, name)) key.fail("goes with other keys or values than those given", false);
+    key.fail("unknown key" + did_you_mean(name, {known_.begin(), known_.end()}), false);
   }
 }
 

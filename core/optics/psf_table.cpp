@@ -21,7 +21,8 @@ double share(double a, double b, double sigma) {
 }  // namespace
 
 PsfTable make_psf_table(double sigma_px) {
-  if (!(sigma_px >= 0.0 && sigma_px <= 500.0)) throw Error("psf: width must be in 0..500 px");
+  if (!(sigma_px >= 0.0 && sigma_px <= widest_sigma_px))
+    throw Error("psf: width must be in 0..500 px");
   PsfTable t;
   t.sigma_px = std::max(sigma_px, narrowest_sigma_px);
   const int reach = int(std::ceil(5 * t.sigma_px + 0.5));

@@ -9,6 +9,7 @@ namespace dmise {
 
 /// Narrower Gaussians are deposited with this width; it moves light by less than 0.1 px.
 inline constexpr double narrowest_sigma_px = 0.02;
+inline constexpr double widest_sigma_px = 500.0;  // that is drawn
 
 /// A round Gaussian integrated over square pixels, tabulated over the sub-pixel position: pixels
 /// are separable, so one axis is enough. With c the centre on an axis, `weights` has for each phase
@@ -26,7 +27,7 @@ struct PsfTable {
   std::vector<std::array<double, 2>> whole;
 };
 
-/// `sigma_px` must be in 0..500; throws `Error` otherwise.
+/// `sigma_px` must be 0 to `widest_sigma_px`; throws `Error` otherwise.
 PsfTable make_psf_table(double sigma_px);
 
 /// Standard deviation of the Gaussian with the half width at half maximum of a circular aperture's

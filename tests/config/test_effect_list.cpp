@@ -53,6 +53,17 @@ TEST(EffectList, EachCanBeSwitchedByItsNameUnlessItHasOtherChoices) {
     }
 }
 
+TEST(EffectList, ItsDocumentNamesThoseThatCannotBeOff) {
+  const std::string page = effects_markdown();
+  const std::size_t from = page.find("levels alone"), end = page.find(".\n", from);
+  ASSERT_NE(from, std::string::npos);
+  const std::string named = page.substr(from, end - from);
+  for (const EffectFacts* effect : all_effects())
+    EXPECT_EQ(named.find("`" + std::string(effect->name) + "`") != std::string::npos,
+              effect->switchable && !effect->can_be_off())
+        << effect->name;
+}
+
 TEST(EffectList, AStreakThatIsSwitchedOffPointsToItsChoices) {
   EffectSet set;
   try {

@@ -107,6 +107,35 @@ TEST(CuedPointing, ReadsItsKeys) {
         << key;
 }
 
+TEST(CuedPointing, ThatIsOffIsNone) {
+  for (const char* off : {"off", "no", "false"}) {
+    const auto pointing = [&](const std::string& more) {
+      return scenario_of(scenario_text("{cued: " + std::string(off) + more + "}"))
+          .sensors[0]
+          .pointing;
+    };
+    EXPECT_TRUE(std::holds_alternative<PointUp>(pointing("")));
+    EXPECT_TRUE(
+        std::holds_alternative<PointHorizon>(pointing(", azimuth_deg: 1, elevation_deg: 2")));
+  }
+  EXPECT_NE(refusal(scenario_text("{cued: 5}")).find("pointing.cued: must be on or off, got 5"),
+            std::string::npos);
+}
+
+TEST(CuedPointing, ItsAzimuthIsAsFastAsItsElevationUnlessSaid) {
+  const auto cue_of = [](const std::string& keys) {
+    const Scenario scenario =
+        scenario_of(scenario_text("{cued: {mount: altazimuth, " + keys + "}}"));
+    return std::get<PointCued>(scenario.sensors[0].pointing).cue;
+  };
+  const CueSettings same = cue_of("slew_deg_per_s: 3, slew_deg_per_s2: 2");
+  EXPECT_EQ(same.azimuth_deg_per_s, 3);
+  EXPECT_EQ(same.azimuth_deg_per_s2, 2);
+  const CueSettings slower = cue_of("slew_deg_per_s: 3, slew_deg_per_s2: 2, azimuth_deg_per_s2: 1");
+  EXPECT_EQ(slower.azimuth_deg_per_s, 3);
+  EXPECT_EQ(slower.azimuth_deg_per_s2, 1);
+}
+
 TEST(CuedPointing, ReadsTheAxesOfItsMount) {
   const auto cue_of = [](const std::string& keys) {
     const Scenario scenario = scenario_of(scenario_text("{cued: {" + keys + "}}"));

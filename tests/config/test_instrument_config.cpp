@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/config/effect_list.h"
 #include "core/config/sensor_config.h"
@@ -46,6 +47,20 @@ TEST(InstrumentConfig, ReadsUnitsIntoSi) {
   EXPECT_EQ(j.bias_rad, (ImageAxes{1 * arcsec, 2 * arcsec, 3 * arcsec}));
   EXPECT_EQ(j.pointing_rms_rad, j.bias_rad);
   EXPECT_FALSE(j.ClockError::applies());
+}
+
+TEST(InstrumentConfig, TheExampleOfTheDocumentsIsRead) {
+  const std::string page = read_text_file(DMISE_SOURCE_DIR "/docs/models/frames.md");
+  const std::string heading = "## What the sensor believes\n\n";
+  const std::size_t from = page.find(heading) + heading.size();
+  const std::string example = page.substr(from, page.find("\n\n", from) - from);
+  setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
+  const YamlValue sensor = YamlValue::parse(
+      "    name: a\n    site: atlanta\n    camera: raven\n    pointing: zenith\n"
+      "    exposure_s: 2\n    cadence_s: 5\n" +
+          example + "\n",
+      "frames.md");
+  EXPECT_EQ(read_sensor(sensor, {}, {}, true, sim_seconds(60)).instrument.offset_s, 0.02);
 }
 
 TEST(InstrumentConfig, WhatCannotBeIsNamed) {

@@ -6,9 +6,10 @@ namespace dmise {
 namespace {
 
 TEST(SensorNames, WhatTheRunItselfUsesIsTakenInAnyCase) {
-  for (const char* name : {"time-master", "broker", "orbit-node", "environment-node",
-                           "positions-node", "fusion-node", "operator", "host-agent", "logs",
-                           "positions", "rings", "Operator", "LOGS", "Positions", "Time-Master"})
+  for (const char* name :
+       {"time-master", "broker", "orbit-node", "environment-node", "positions-node", "fusion-node",
+        "operator", "host-agent", "logs", "positions", "rings", "gateway", "export", "Operator",
+        "LOGS", "Positions", "Time-Master"})
     EXPECT_TRUE(SensorNames().fault_of(name)) << name;
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/config/camera_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/sky_config.h"
 
@@ -74,6 +75,9 @@ TEST(OpticsConfig, RefusesAFisheyeThatTurnsBackInTheFrame) {
             std::string::npos);
   EXPECT_NE(refusal("projection: kannala_brandt\ndistortion: {k5: 1}\n").find("unknown key"),
             std::string::npos);
+  EXPECT_NE(refusal("projection: brown_conrady\ndistortion: {k4: 1}\n")
+                .find("distortion.k4: goes with other keys or values than those given"),
+            std::string::npos);
 }
 
 // By hand: r - 0.3 r^3 turns back at r = 1 / sqrt(0.9), 46.51 deg.
@@ -113,12 +117,53 @@ TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
   EXPECT_NE(refusal("psf: diffraction\nspider: 4\n").find("did you mean"), std::string::npos);
 }
 
+std::string refusal_of_camera(const std::string& optics, const std::string& band = "bessell-V") {
+  try {
+    read_camera(YamlValue::parse(
+        "optics: {columns: 64, rows: 64, " + optics +
+            "}\ndetector: {full_well_e: 50000, gain_e_per_dn: 2}\nband: " + band + "\n",
+        "camera.yaml"));
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// By hand: 0.5145 * 548.9 nm / 40 um is half of a width of 14.12 mrad, with a sigma of 5.997 mrad:
+// 666 pixels of 9 urad.
+TEST(CameraConfig, RefusesABlurThatIsWiderThanIsDrawn) {
+  for (const char* psf : {"", ", psf: diffraction"})
+    EXPECT_EQ(refusal_of_camera("pixel_pitch_m: 9e-6, focal_length_m: 1, aperture_m: 4.0e-5" +
+                                std::string(psf)),
+              "camera.yaml:1:85: optics.aperture_m: diffraction with this focal length and pixel "
+              "pitch blurs to a sigma of 666 px, more than 500, got 4.0e-5");
+  EXPECT_EQ(refusal_of_camera("pixel_pitch_m: 9e-6, focal_length_m: 1, aperture_m: 6.0e-5"), "");
+}
+
+TEST(CameraConfig, RefusesLengthsThatNothingCanBeComputedFrom) {
+  EXPECT_EQ(refusal_of_camera("pixel_pitch_m: 1e-300, focal_length_m: 1, aperture_m: 0.1"),
+            "camera.yaml:1:48: optics.pixel_pitch_m: must be >= 1e-12, got 1e-300");
+  EXPECT_EQ(refusal_of_camera("pixel_pitch_m: 9e-6, focal_length_m: 1e300, aperture_m: 0.1"),
+            "camera.yaml:1:70: optics.focal_length_m: must be <= 1e+06, got 1e300");
+  const std::string usual = "pixel_pitch_m: 9e-6, focal_length_m: 1, aperture_m: 0.1";
+  EXPECT_EQ(refusal_of_camera(usual, "{centre_m: 5.5e-7, width_m: 1e-300}"),
+            "camera.yaml:3:35: band.width_m: must be >= 1e-18, got 1e-300");
+  EXPECT_EQ(refusal_of_camera(usual, "{centre_m: 3.0e-5, width_m: 1e-18}"), "");
+}
+
 TEST(OpticsConfig, ReadsSeeing) {
   const SensorSeeing s = read_seeing(
       YamlValue::parse("{r0_m: 0.08, outer_scale_m: 25, wind_m_per_s: 12}", "scenario.yaml"), 1.0);
   EXPECT_EQ(s.r0_m, 0.08);
   EXPECT_EQ(s.outer_scale_m, 25.0);
   EXPECT_THROW(read_seeing(YamlValue::parse("{r0_m: 0}", "s.yaml"), 1.0), ConfigError);
+  try {
+    read_seeing(YamlValue::parse("{r0_m: 0.1, jet_wind_m_per_s: 30}", "s.yaml"), 1.0);
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_STREQ(e.what(),
+                 "s.yaml:1:13: jet_wind_m_per_s: goes with other keys or values than those given");
+  }
 }
 
 }  // namespace

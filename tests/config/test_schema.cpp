@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/config/yaml_reader.h"
 
@@ -42,12 +44,64 @@ TEST(Schema, ItsPagesAreUpToDate) {
   }
 }
 
+/// Whether a file may have `text` in this form.
+bool accepts(const Form& form, const std::string& text) {
+  const auto number = parse_real(text);
+  switch (form.kind) {
+    case Form::Kind::number:
+      return number && *number <= form.bounds.most &&
+             (form.bounds.least_open ? *number > form.bounds.least : *number >= form.bounds.least);
+    case Form::Kind::integer:
+      return number && *number == std::int64_t(*number) && *number >= double(form.least) &&
+             *number <= double(form.most);
+    case Form::Kind::flag:
+      return text == "on" || text == "off";
+    case Form::Kind::choice:
+      return std::ranges::find(form.words, text) != form.words.end();
+    case Form::Kind::text:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// A default of several words, a list, or a word for a number is for readers of the page.
+TEST(Schema, EveryDefaultIsAValueThatItsKeyMayHave) {
+  std::size_t checked = 0;
+  for (const FileKind& kind : file_kinds())
+    for (const Section* section : sections_within(kind.section()))
+      for (const Key& key : section->keys) {
+        if (key.otherwise.empty() || key.otherwise.find_first_of(" [") != std::string::npos)
+          continue;
+        const bool has_words = std::ranges::any_of(key.forms, [](const Form& form) {
+          return form.kind == Form::Kind::flag || form.kind == Form::Kind::choice ||
+                 form.kind == Form::Kind::text;
+        });
+        if (!has_words && !parse_real(key.otherwise)) continue;
+        ++checked;
+        EXPECT_TRUE(std::ranges::any_of(
+            key.forms, [&](const Form& form) { return accepts(form, key.otherwise); }))
+            << section->name << "." << key.name << ": " << key.otherwise;
+      }
+  EXPECT_GT(checked, 100u);
+}
+
+TEST(Schema, StatesTheGreatestSeedAndBothRangesOfACoefficient) {
+  const std::string page = schema_markdown(file_kinds()[0]);
+  EXPECT_NE(page.find("| `seed` | integer 0 to 9223372036854775807 |"), std::string::npos);
+  const std::string camera = schema_markdown(file_kinds()[2]);
+  for (const char* range :
+       {"-1000 to 1000 with `kannala_brandt`", "-10000 to 10000 with `brown_conrady`"})
+    EXPECT_NE(camera.find(range), std::string::npos) << range;
+}
+
 const Section& lens_section() {
   static const Section section{"lens",
                                "A lens.",
                                {required("pitch_m", form::above(0.0, 1.0), "Pitch [m]."),
                                 optional("gain", form::number(1.0, 9.0), "Gain.", "2"),
-                                optional("sharp", form::flag(), "Sharp.", "on")}};
+                                optional("sharp", form::flag(), "Sharp.", "on"),
+                                optional("pitch", form::flag(), "Not read here.")}};
   return section;
 }
 
@@ -69,6 +123,14 @@ TEST(Section, GivesReadersTheirRanges) {
   EXPECT_EQ(complaint("pitch_m: 0\n"), "l.yaml:1:10: pitch_m: must be > 0, got 0");
   EXPECT_EQ(complaint("pitch_m: 1.5\n"), "l.yaml:1:10: pitch_m: must be <= 1, got 1.5");
   EXPECT_EQ(complaint("pitch_m: 1\ngain: 0\n"), "l.yaml:2:7: gain: must be >= 1, got 0");
+}
+
+// Which keys go together is up to a reader: that it did not ask for one does not make it unknown.
+TEST(Section, AKeyThatIsNotReadBesideOthersIsNotCalledUnknown) {
+  EXPECT_EQ(complaint("pitch_m: 1\npitch: on\n"),
+            "l.yaml:2:1: pitch: goes with other keys or values than those given");
+  EXPECT_EQ(complaint("pitch: on\n"), "l.yaml:1:1: pitch_m: is missing");
+  EXPECT_EQ(complaint("pitch_m: 1\ngan: 3\n"), "l.yaml:2:1: gan: unknown key, did you mean gain?");
 }
 
 TEST(Section, LetsReadersTakeNothingThatItDoesNotSay) {

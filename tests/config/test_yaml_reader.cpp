@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
 #include "core/base/error.h"
 
@@ -45,6 +46,20 @@ TEST(YamlReader, PointsAtTheValueThatIsWrong) {
   EXPECT_EQ(complaint("camera:\n  exposure_s: [1]\n", read),
             "s.yaml:2:15: camera.exposure_s: must be a number, got a list");
   EXPECT_EQ(complaint("camera:\n  gain: 1\n", read), "s.yaml:2:3: camera.exposure_s: is missing");
+}
+
+TEST(YamlReader, NamesTheBoundOfAWholeNumberThatIsTooLong) {
+  const auto read = [](YamlMap& m) {
+    m.require("seed").integer(0, std::numeric_limits<std::int64_t>::max());
+  };
+  EXPECT_EQ(complaint("seed: 9223372036854775807\n", read), "");
+  for (const char* seed : {"9223372036854775808", "18446744073709551615", "1000000000000000000000"})
+    EXPECT_EQ(complaint("seed: " + std::string(seed) + "\n", read),
+              "s.yaml:1:7: seed: must be <= 9223372036854775807, got " + std::string(seed));
+  EXPECT_EQ(complaint("seed: -9223372036854775809\n", read),
+            "s.yaml:1:7: seed: must be >= 0, got -9223372036854775809");
+  EXPECT_EQ(complaint("seed: 9223372036854775808.5\n", read),
+            "s.yaml:1:7: seed: must be a whole number, got 9223372036854775808.5");
 }
 
 TEST(YamlReader, RefusesUnknownKeysWithASuggestion) {

@@ -35,10 +35,11 @@ GOOD = [("simulation.seed", 7), ("simulation.interpolation", "5"), ("output.fits
         ("sensors.0.effects", {"airglow": "off", "stars": "v9"}), ("sensors.0.sky", 20.5), ("sensors.0.sky", "urban"),
         ("sensors.0.first_exposure_s", 3), ("accuracy", "draft"), ("accuracy", {"position_px": 0.1}),
         ("network", {"real_time": 2}), ("output.star_truth", "on"), ("sensors.0.pointing", "zenith"),
+        ("sensors.0.pointing", {"azimuth_deg": 180, "elevation_deg": 60, "cued": "off"}),
         ("sensors.0.weather", {"pressure_hpa": 960, "clouds": {"cover": 0.3}}),
         (CAMERA + "optics.psf", "diffraction"), (CAMERA + "detector.quantum_efficiency", 1)]
-BAD = [("sensors", []), ("simulation.sed", 7), ("simulation.seed", -1), ("simulation.seed", 1.5), ("simulation.tick_s", 0),
-       ("simulation.tick_s", "fast"), ("simulation.interpolation", "4"), ("simulation.start", None),
+BAD = [("sensors", []), ("simulation.sed", 7), ("simulation.seed", -1), ("simulation.seed", 1.5), ("simulation.seed", 2**63),
+       ("simulation.tick_s", 0), ("simulation.tick_s", "fast"), ("simulation.interpolation", "4"), ("simulation.start", None),
        ("sensors.0.exposure_s", -1), ("sensors.0.exposure_s", [1]), ("sensors.0.name", None), ("sensors.0.mask_deg", 90),
        ("sensors.0.site.latitude_deg", 91), ("sensors.0.site.colour", "red"), ("sensors.0.sky", "bright"),
        ("sensors.0.effects", {"airglo": "off"}), ("sensors.0.effects", {"airglow": "dim"}),
