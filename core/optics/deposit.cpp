@@ -220,6 +220,14 @@ DepositView view_of(ExpectedElectronImage& image) {
           .frame_rows = image.rows};
 }
 
+DepositView without_border(DepositView view, int border) {
+  view.left += border;
+  view.top += border;
+  view.frame_columns -= 2 * border;
+  view.frame_rows -= 2 * border;
+  return view;
+}
+
 Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view) {
   return inside(arc, psf, view);
 }

@@ -19,11 +19,13 @@ int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 }  // namespace
 
-DirectBlur::DirectBlur(int oversampling, int half_cells, PointSpread::Resampling resampling)
+DirectBlur::DirectBlur(int oversampling, int half_cells, PointSpread::Resampling resampling,
+                       int border_px)
     : k_(oversampling),
       half_(half_cells),
       reach_px_((half_cells + oversampling - 1) / oversampling + 1),
       side_(2 * reach_px_ + 1),
+      border_px_(border_px),
       resampling_(resampling),
       table_(make_psf_table(grid_sigma_cells)) {}
 
@@ -142,10 +144,11 @@ std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, ExpectedEl
     }
   });
   std::vector<Deposited> result(arcs.size());
-  const DepositView frame{.columns = light.columns * k_,
-                          .rows = light.rows * k_,
-                          .frame_columns = light.columns * k_,
-                          .frame_rows = light.rows * k_};
+  const DepositView frame = without_border({.columns = light.columns * k_,
+                                            .rows = light.rows * k_,
+                                            .frame_columns = light.columns * k_,
+                                            .frame_rows = light.rows * k_},
+                                           border_px_ * k_);
   threads.for_ranges(arcs.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Deposited d = deposited_in_frame(on_cells(arcs[i]), table_, frame);

@@ -14,7 +14,9 @@ namespace dmise {
 /// multiplications per source for k cells per pixel.
 class DirectBlur {
  public:
-  DirectBlur(int oversampling, int half_cells, PointSpread::Resampling resampling);
+  /// Light in a border of the image, `border_px` wide, is not in the frame.
+  DirectBlur(int oversampling, int half_cells, PointSpread::Resampling resampling,
+             int border_px = 0);
 
   void set_kernel(const PsfKernel& kernel);
 
@@ -30,6 +32,7 @@ class DirectBlur {
   Arc on_cells(const Arc& arc) const;
 
   int k_, half_, reach_px_, side_;  // `side_`: pixels of the summed kernel
+  int border_px_;
   PointSpread::Resampling resampling_;
   PsfTable table_;
   std::vector<float> shares_;  // for each of the k x k cells of a pixel: side x side

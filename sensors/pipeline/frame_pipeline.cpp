@@ -81,11 +81,11 @@ struct FramePipeline::Work {
     const auto same_level = [&](const EffectFacts& effect) {
       return planned.effects.level(effect) == effects.level(effect);
     };
-    const bool same_blur = same_level(PointSpread::facts) && same_level(AirTurbulence::facts) &&
-                           same_level(PsfWavelengths::facts) && same_level(FieldBlur::facts) &&
-                           same_level(FocusDrift::facts);
+    const bool same_optics = same_level(PointSpread::facts) && same_level(AirTurbulence::facts) &&
+                             same_level(PsfWavelengths::facts) && same_level(FieldBlur::facts) &&
+                             same_level(FocusDrift::facts) && same_level(ReferencePixels::facts);
     planned.effects = effects;
-    if (!same_blur) make_optics();
+    if (!same_optics) make_optics();
   }
 
   void give_back(CountImage counts) {

@@ -50,6 +50,7 @@ void take_object_lights(const View& view, const FrameTimes& commanded, const Lig
     alone.objects = &objects;
     expected_electrons(in_the_dark, alone, optics, image, threads, elsewhere);
   };
+  const int border_px = acting_detector(dark.camera.detector, dark.effects).reference_px;
   ExpectedElectronImage light(grid.columns, grid.rows);
   // What has a shape hides what is behind it.
   const bool may_hide =
@@ -73,6 +74,11 @@ void take_object_lights(const View& view, const FrameTimes& commanded, const Lig
       for (std::size_t i = 0; i < light.pixels.size(); ++i)
         light.pixels[i] = std::max(0.0f, light.pixels[i] - others.pixels[i]);
     }
+    visit_border(border_px, grid.columns, grid.rows, 0, light.pixels.size(),
+                 [&](std::size_t begin, std::size_t end) {
+                   std::fill(light.pixels.begin() + std::ptrdiff_t(begin),
+                             light.pixels.begin() + std::ptrdiff_t(end), 0.0f);
+                 });
     take(truths[k], light, noise);
   }
 }

@@ -7,8 +7,9 @@
 
 namespace dmise {
 
-/// Takes the light that one object alone leaves in a frame [e-], and the expected noise of the
-/// frame's pixels with all its light [e-]. The images are valid during the call.
+/// Takes the light that one object alone leaves in a frame [e-], none in its border of reference
+/// pixels, and the expected noise of the frame's pixels with all its light [e-]. The images are
+/// valid during the call.
 using ObjectLightTaker = std::function<void(const Truth&, const ExpectedElectronImage& light,
                                             const ElectronImage& noise)>;
 

@@ -57,6 +57,7 @@ std::vector<FieldPlace> field_places(const Optics& o) {
 OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads)
     : optics_(acting_blur(sensor)),
       blurs_(sensor.effects.has(PointSpread::facts)),
+      border_px_(acting_detector(sensor.camera.detector, sensor.effects).reference_px),
       drifts_(sensor.camera.optics.spread.drift.any() && sensor.effects.has(FocusDrift::facts)),
       defocus_m_(optics_.spread.defocus_m),
       plan_(plan_of(sensor)),
@@ -78,8 +79,8 @@ OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads
   model_ =
       std::make_unique<PsfModel>(optics_, wavelengths_of(band, optics_.spread.wavelengths), plan_,
                                  sensor.seeing, rng_key(seed, sensor.name, 0, "turbulence"));
-  direct_ =
-      std::make_unique<DirectBlur>(plan_.oversampling, plan_.half_cells, optics_.spread.resampling);
+  direct_ = std::make_unique<DirectBlur>(plan_.oversampling, plan_.half_cells,
+                                         optics_.spread.resampling, border_px_);
   if (plan_.method == Method::transform)
     grid_ = std::make_unique<BlurGrid>(optics_.columns, optics_.rows, plan_.oversampling,
                                        plan_.half_cells, optics_.spread.grid_columns,
@@ -161,7 +162,7 @@ std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const Deposit
 
 std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElectronImage& light,
                                         DepositSums sums) {
-  if (!model_) return put(arcs, view_of(light), sums);
+  if (!model_) return put(arcs, without_border(view_of(light), border_px_), sums);
   if (!grid_) return sum_directly(arcs, light);
 
   const auto is_bright = [&](const Arc& arc) { return arc.signal_e > bright_e_; };
@@ -170,7 +171,8 @@ std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElect
   for (Arc& arc : others) arc = grid_->on_cells(arc);
   std::vector<Deposited> direct, on_grid;
   if (!bright.empty()) direct = sum_directly(bright, light);
-  if (!others.empty()) on_grid = put(others, grid_->cells(), sums);
+  if (!others.empty())
+    on_grid = put(others, without_border(grid_->cells(), border_px_ * grid_->oversampling()), sums);
   std::vector<Deposited> result;
   std::size_t b = 0, o = 0;
   for (const Arc& arc : arcs) {

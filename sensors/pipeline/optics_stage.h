@@ -44,7 +44,8 @@ class OpticsStage {
   /// Adds the light of an extended source, blurred, to `light`: before the first arc of a frame.
   /// Where arcs are summed one by one the blur is a Gaussian of its width.
   void add_extended(const ExtendedLight& source, ExpectedElectronImage& light);
-  /// Puts light on the plane; returns what of each arc fell inside the frame.
+  /// Puts light on the plane; returns what of each arc fell inside the frame, where its pixels
+  /// collect light.
   std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light,
                              DepositSums sums = DepositSums::all);
   /// Blurs and adds what is still on the grid; then the light is complete, nowhere negative.
@@ -58,6 +59,7 @@ class OpticsStage {
 
   Optics optics_;
   bool blurs_;              // the effect psf is on
+  int border_px_;           // of reference pixels, which collect no light
   bool drifts_;             // its focus
   double defocus_m_ = 0.0;  // of the frame
   PsfPlan plan_;

@@ -112,5 +112,34 @@ TEST(ObjectLight, WhatIsHiddenHasNone) {
   }
 }
 
+// Pixels of a border of 16 px collect nothing: an object on its rim has half of its light, one
+// within none.
+TEST(ObjectLight, InReferencePixelsIsNone) {
+  const Sight sight = lit_sight();
+  const std::string objects =
+      point(sight, "middle", 0, 0) + point(sight, "rim", -48, 3) + point(sight, "within", 60, -60);
+  for (const auto& optics : {gaussian, diffraction, ghost}) {
+    std::string text =
+        text_of({.objects = objects, .pointing = "{target: middle}", .optics = optics});
+    text.insert(text.find("full_well_e"), "reference_px: 16, ");
+    Stage stage(text);
+    const Lights lights = lights_of(stage);
+    const double all_e = truth_named(lights.frame, "middle").rendered_signal_e;
+    const Truth& rim = truth_named(lights.frame, "rim");
+    EXPECT_NEAR(rim.rendered_signal_e / all_e, 0.5, 0.01);
+    EXPECT_GT(rim.rendered_x_px, 15.5);
+    EXPECT_TRUE(rim.in_frame);
+    EXPECT_TRUE(rim.whole);
+    EXPECT_FALSE(truth_named(lights.frame, "within").in_frame);
+    EXPECT_EQ(truth_named(lights.frame, "within").rendered_signal_e, 0.0);
+    EXPECT_EQ(lights.frame.report.objects_rendered, 2u);
+    ASSERT_EQ(lights.images.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(sum(lights.images[k]) / lights.truths[k].rendered_signal_e, 1.0, 0.02);
+      for (int i = 0; i < 128; ++i) EXPECT_EQ(lights.images[k].at(15, i), 0.0f);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dmise::test
