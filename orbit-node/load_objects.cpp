@@ -22,18 +22,18 @@ bool wanted(const ObjectSource& source, const MeanElements& elements) {
          });
 }
 
-void require_all_found(const ObjectSource& source, const std::vector<MeanElements>& elements) {
-  for (std::size_t k = 0; k < source.only.size(); ++k) {
-    const std::string& name = source.only[k];
-    if (std::ranges::any_of(elements, [&](const auto& e) { return is_called(e, name); })) continue;
-    std::vector<std::string> names;
-    for (const auto& e : elements) names.push_back(e.name);
-    const std::string hint = nearest_object(name, names);
-    const std::string where = k < source.only_where.size() ? source.only_where[k] : source.path;
-    throw ConfigError(where + ": no object of " + source.path + " has this name or number" +
-                      (hint.empty() ? "" : ", did you mean " + printable(hint) + "?") + ", got " +
-                      printable(name));
-  }
+/// Throws `ConfigError` at `where` if none of `objects` has this name or number; `whose`: " of
+/// FILE", or empty.
+template <class Object>
+void require_found(const std::vector<Object>& objects, const std::string& name,
+                   const std::string& where, const std::string& whose) {
+  if (std::ranges::any_of(objects, [&](const auto& o) { return is_called(o, name); })) return;
+  std::vector<std::string> names;
+  for (const auto& o : objects) names.push_back(o.name);
+  const std::string hint = nearest_object(name, names);
+  throw ConfigError(where + ": no object" + whose + " has this name or number" +
+                    (hint.empty() ? "" : ", did you mean " + printable(hint) + "?") + ", got " +
+                    printable(name));
 }
 
 std::string prefix(const std::string& where) { return where.empty() ? "" : where + ": "; }
@@ -70,6 +70,10 @@ class Loader {
         population_.models.push_back(*model);
         add(object, 0.0);
       }
+    if (const auto& fusion = scenario_.fusion)
+      for (std::size_t k = 0; k < fusion->not_in_catalogue.size(); ++k)
+        require_found(population_.roster.objects, fusion->not_in_catalogue[k],
+                      fusion->not_in_catalogue_where[k], "");
     if (stale_ > 0)
       note(std::to_string(stale_) + " of " + std::to_string(population_.elements.size()) +
            " objects have elements more than 30 days from the start of the run");
@@ -87,7 +91,10 @@ class Loader {
                         (catalogue.refused.empty()
                              ? std::string()
                              : ": " + catalogue.describe(catalogue.refused[0])));
-    require_all_found(source, catalogue.elements);
+    for (std::size_t k = 0; k < source.only.size(); ++k)
+      require_found(catalogue.elements, source.only[k],
+                    k < source.only_where.size() ? source.only_where[k] : source.path,
+                    " of " + source.path);
     ObjectFactsFile facts;
     if (!source.facts_path.empty())
       facts = at_key(source.where, [&] { return read_object_facts(source.facts_path); });

@@ -78,12 +78,6 @@ std::vector<std::string> FusionEvaluator::consumes() const {
 
 void FusionEvaluator::start_with(const ObjectRoster& roster) {
   const FusionConfig& config = *scenario_.fusion;
-  for (std::size_t k = 0; k < config.not_in_catalogue.size(); ++k) {
-    const std::string& name = config.not_in_catalogue[k];
-    if (std::ranges::none_of(roster.objects, [&](const auto& o) { return is_called(o, name); }))
-      throw ConfigError(config.not_in_catalogue_where[k] +
-                        ": no object has this name or number, got " + name);
-  }
   std::vector<MeanElements> catalogue;
   for (std::size_t i = 0; i < roster.elements.size(); ++i) {
     if (std::ranges::any_of(config.not_in_catalogue,

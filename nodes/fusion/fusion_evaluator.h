@@ -43,8 +43,7 @@ class FusionEvaluator : public Evaluator {
     int columns = 0, rows = 0;
     double half_angle_rad = 0.0;
   };
-  /// Starts the fusion with the catalogue of the roster. Throws `ConfigError` for an object of
-  /// `not_in_catalogue` that the roster does not have.
+  /// Starts the fusion with the roster's objects but for those of `not_in_catalogue`.
   void start_with(const ObjectRoster& roster);
   struct Found {
     TrackSet tracks;

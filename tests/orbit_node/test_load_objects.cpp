@@ -79,6 +79,22 @@ TEST_F(ObjectPopulationTest, OnesOwnObjectTakesThePlaceOfACataloguesWithItsNumbe
             "(give it the number 29155 to take its place)");
 }
 
+TEST_F(ObjectPopulationTest, WhatTheFusionNodeIsNotToKnowIsThere) {
+  const std::string own = "  - {name: own, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n";
+  const auto complaint_of = [&](const std::string& names) {
+    return complaint([&] {
+      population("  - {catalogue: goes.tle}\n" + own + "fusion: {not_in_catalogue: " + names +
+                 "}\n");
+    });
+  };
+  EXPECT_EQ(complaint_of("[GOES 13, own]"), "");
+  EXPECT_EQ(complaint_of("[29155]"), "");
+  EXPECT_EQ(
+      complaint_of("[own, GOES 14]"),
+      "scenario.yaml:5:34: fusion.not_in_catalogue[1]: no object has this name or number, did "
+      "you mean GOES 13?, got GOES 14");
+}
+
 TEST_F(ObjectPopulationTest, ATrajectoryThatMissesTheRunIsRefused) {
   std::ifstream file(directory / "inspector.oem");
   std::string text{std::istreambuf_iterator<char>(file), {}};
