@@ -268,7 +268,7 @@ void add_join_command(CLI::App& app) {
                    "where the node's own sockets bind, tcp://A.B.C.D:0; default: this machine's "
                    "address towards the time-master")
       ->check(transport_address());
-  command->add_option("--seed", options->seed, "as given to the launch");
+  add_seed_option(*command, options->seed, "as given to the launch");
   command->add_option("--plan", options->plan, "as given to the launch");
   command->allow_extras();  // for the node's program: --threads, --log-level
   command->callback([options, command] {

@@ -24,8 +24,7 @@ void add_launch_command(CLI::App& app) {
                    "number of agents that the sensors join, one per host; 0: none")
       ->default_val(0)
       ->check(CLI::Range(0, 10000));
-  command->add_option("--seed", options->seed,
-                      "seed of the random numbers, instead of the scenario's");
+  add_seed_option(*command, options->seed, "seed of the random numbers, instead of the scenario's");
   command->add_option("--plan", options->plan,
                       "run.json of a run: its frames' levels of effects instead of a plan");
   command->add_option("--keys", options->keys,

@@ -4,7 +4,9 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/config/camera_config.h"
 #include "core/config/effect_list.h"
@@ -20,12 +22,21 @@ void print(const std::string& name, const std::string& what) {
   std::printf("%-18s %s\n", name.c_str(), what.c_str());
 }
 
+/// Throws `ConfigError` if there are none: the directory is not the program's.
+std::vector<std::string> names_of(const char* kind) {
+  auto names = preset_names(kind);
+  if (names.empty())
+    throw ConfigError(home_directory() + "/launch/" + kind +
+                      ": there are no files; DMISE_HOME must be the directory that launch/ is in");
+  return names;
+}
+
 YamlValue preset(const char* kind, const std::string& name) {
   return YamlValue::load(find_preset(kind, name, ""));
 }
 
 void list_cameras() {
-  for (const auto& name : preset_names("cameras")) {
+  for (const auto& name : names_of("cameras")) {
     const Camera camera = read_camera(preset("cameras", name));
     print(name, formatted("%d x %d px of %.3g um, focal length %.4g m, aperture %.3g m, %s",
                           camera.optics.columns, camera.optics.rows,
@@ -35,7 +46,7 @@ void list_cameras() {
 }
 
 void list_sites() {
-  for (const auto& name : preset_names("sites")) {
+  for (const auto& name : names_of("sites")) {
     YamlMap site(preset("sites", name));
     const double latitude_deg = site.number("latitude_deg"),
                  longitude_deg = site.number("longitude_deg");
@@ -54,6 +65,7 @@ void list_filters() {
 }
 
 void list_materials() {
+  names_of("materials");
   for (const auto& [name, material] : MaterialLibrary::shipped().all())
     print(name, material.source);
 }
@@ -84,7 +96,7 @@ void add_list_command(CLI::App& app) {
       {"cameras", {"for sensors[].camera", list_cameras}},
       {"sites", {"for sensors[].site", list_sites}},
       {"filters", {"for a camera's band", list_filters}},
-      {"materials", {"for objects[].shape and its surfaces", list_materials}},
+      {"materials", {"for objects[].geometry", list_materials}},
       {"catalogues", {"for objects[].catalogue and stars.catalogue", list_catalogues}},
       {"effects", {"for effects, as a table in Markdown", list_effects}}};
   for (const auto& [name, kind] : kinds)

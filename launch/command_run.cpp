@@ -194,8 +194,7 @@ void add_run_command(CLI::App& app) {
   command->add_option("--out", options->out, "directory of the products")->default_val("out/run");
   add_threads_option(*command, options->threads,
                      "number of threads; the products do not depend on it");
-  command->add_option("--seed", options->seed,
-                      "seed of the random numbers, instead of the scenario's");
+  add_seed_option(*command, options->seed, "seed of the random numbers, instead of the scenario's");
   command->add_option("--plan", options->plan,
                       "run.json of a run: its frames' levels of effects instead of a plan");
   command->add_flag("--force", options->force, "replace the products in the directory");

@@ -1,5 +1,8 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include "nodes/runtime/program/command_line.h"
@@ -21,6 +24,14 @@ inline CLI::Option* add_threads_option(CLI::App& command, int& threads,
   return command.add_option("--threads", threads, what)
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
+}
+
+/// Adds `--seed`, within the range of a scenario's `simulation.seed`.
+inline CLI::Option* add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed,
+                                    const std::string& what) {
+  return command.add_option("--seed", seed, what)
+      ->check(
+          CLI::Range(std::uint64_t{0}, std::uint64_t(std::numeric_limits<std::int64_t>::max())));
 }
 
 /// Adds `name`, the address of the time-master.

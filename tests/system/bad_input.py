@@ -3,6 +3,7 @@
     bad_input.py DMISE
 """
 
+import os
 import re
 import subprocess
 
@@ -74,6 +75,16 @@ def test(binary, directory):
             check(done.returncode == 2 and re.fullmatch(expected, said),
                   f"{command[0]}: {bad}: code {done.returncode}: {said}")
     check(not (directory / "out").exists(), "a refused run leaves no directory")
+    for seed in ("9223372036854775808", "18446744073709551615"):  # no scenario can have it
+        done = subprocess.run([binary, "run", good, "--seed", seed, "--out", directory / "out"], capture_output=True, text=True,
+                              check=False)
+        check(done.returncode == 2 and re.fullmatch(r".*--seed.* 9223372036854775807.*\n", done.stderr),
+              f"--seed {seed}: code {done.returncode}: {done.stderr}")
+    for kind in ("cameras", "sites", "materials"):
+        done = subprocess.run([binary, "list", kind], capture_output=True, text=True, check=False,
+                              env={**os.environ, "DMISE_HOME": "/nonexistent"})
+        check(done.returncode == 2 and re.fullmatch(rf".*/nonexistent/launch/{kind}: .*DMISE_HOME.*\n", done.stderr),
+              f"list {kind} of no DMISE_HOME: code {done.returncode}: {done.stderr}")
 
 
 if __name__ == "__main__":
