@@ -51,9 +51,11 @@ std::string scenario(const CameraCase& c) {
     << "sensors:\n  - {name: eye, " << c.place << ", camera: {optics: {projection: " << c.projection
     << ", columns: " << c.columns << ", rows: " << c.rows
     << ", pixel_pitch_m: 5e-6, field_of_view_deg: " << c.field_deg
-    << ", aperture_m: 1e-6, psf_fwhm_px: 1.5}, detector: {full_well_e: 20000, gain_e_per_dn: 1,"
-    << " read_noise_e: 5}, band: {centre_m: 0.55e-6, width_m: 0.1e-6}}, pointing: " << c.pointing
-    << ", exposure_s: 1, cadence_s: 10}\n";
+    << ", aperture_m: 0.1, equivalent_aperture: on, psf_fwhm_px: 1.5}, detector: {full_well_e: "
+       "20000,"
+    << " gain_e_per_dn: 1, read_noise_e: 5}, band: {centre_m: 0.55e-6, width_m: 0.1e-6}}, "
+       "pointing: "
+    << c.pointing << ", exposure_s: 1, cadence_s: 10}\n";
   return s.str();
 }
 
