@@ -23,14 +23,22 @@ struct ZeroPoint {
   bool colour_fitted = false, extinction_fitted = false;
   int stars = 0;  // without outliers
   double rms_mag = 0.0;
+  /// Variance of stars besides their photons': of all alike, and by scintillation at an airmass
+  /// of 1.
+  double even_mag2 = 0.0, scintillation_mag2 = 0.0;
 
   double sigma(std::size_t i) const;
+  /// Standard deviation of stars besides their photons'. Scintillation's variance goes as the third
+  /// power of the airmass (Young 1967, AJ 72, 747).
+  double scatter_mag(double airmass) const;
 };
 
-/// Fits by robust least squares (Tukey's weights). The colour term takes 10 stars over 0.3 mag of
-/// B-V, else it is 0; extinction takes 20 stars over 0.25 airmasses, else it is as believed. Empty
+/// Fits by robust least squares (Tukey's weights), with the scatter of the residuals in the
+/// covariance. The colour term takes 10 stars over 0.3 mag of B-V, else it is 0. Extinction takes
+/// 20 stars over 0.25 airmasses that determine it to 0.05 mag, else it is as believed (0: unknown);
+/// a belief is kept unless they determine it to 0.005 mag or contradict it by 4 sigma. Empty
 /// without a star.
 std::optional<ZeroPoint> fit_zero_point(std::span<const PhotometricStar> stars,
-                                        double believed_extinction);
+                                        std::optional<double> believed_extinction);
 
 }  // namespace dmise

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/base/json.h"
+#include "core/calibration/star_photometry.h"
 #include "core/calibration/star_sources.h"
 #include "core/detection/atmosphere.h"
 #include "core/frames/quaternion.h"
-#include "core/sky/airmass.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs_fit.h"
@@ -83,28 +83,6 @@ Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
   return wcs;
 }
 
-std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
-                                       std::span<const PlateSource> sources, const PlateSky& sky) {
-  if (frame.header.unknown.has(FrameFact::exposure)) return std::nullopt;
-  std::vector<PhotometricStar> stars;
-  for (std::size_t k = 0; k < plate.matches.size(); ++k) {
-    const PlateSource& source = sources[plate.matches[k].source];
-    if (!plate.fit.used[k] || source.saturated) continue;
-    const SeenStar& star = plate.stars[plate.matches[k].star];
-    // A colour term by B-V is not that of red dwarfs and giants of type M.
-    if (sky.map().stars.colour(star.index).kind != StarKind::most) continue;
-    double x = 0.0;
-    if (sky.air()) {
-      const double sine = dot(star.direction, sky.air()->zenith);
-      x = airmass(std::asin(std::clamp(sine, -1.0, 1.0)));
-    }
-    stars.push_back({-2.5 * std::log10(source.flux / frame.header.exposure_s),
-                     2.5 / std::log(10.0) * source.flux_sigma / source.flux, star.v_mag, star.bv,
-                     x});
-  }
-  return fit_zero_point(stars, sky.air() ? frame.header.extinction_mag_per_airmass : 0.0);
-}
-
 /// The plate near the believed axis; elsewhere, if there is none: headers may name a target that
 /// is beside the frame.
 PlateSolution solved_plate(std::span<const PlateSource> sources, PlateBelief belief,
@@ -125,11 +103,14 @@ FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveS
                           Threads& threads) {
   const FrameHeader& h = frame.header;
   const PlateSky sky(stars, observer_of(h));
+  const bool moves = !settings.blind && !h.unknown.has(FrameFact::pointing);
+  const StarMotion motion(h, frame.counts.columns, frame.counts.rows);
   const auto sources =
       find_star_sources(frame.counts,
                         {.gain_e_per_dn = h.gain_e_per_dn,
                          .saturation_dn = h.saturation_dn - 5 * h.read_noise_e / h.gain_e_per_dn,
-                         .psf_fwhm_px = h.psf_fwhm_px},
+                         .psf_fwhm_px = h.psf_fwhm_px,
+                         .motion = moves ? &motion : nullptr},
                         threads);
   FrameSolution out;
   out.sources = sources.size();
@@ -159,7 +140,7 @@ FrameHeader solved_header(const FrameHeader& header, const FrameSolution& soluti
     h.zero_point_mag = z->zero_point_mag + h.magnitudes.solar_colour_mag;
     h.extinction_mag_per_airmass = z->extinction_mag_per_airmass;
     h.unknown.remove(FrameFact::zero_point);
-    h.unknown.remove(FrameFact::extinction);
+    if (z->extinction_fitted) h.unknown.remove(FrameFact::extinction);
   }
   return h;
 }

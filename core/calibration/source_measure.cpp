@@ -93,8 +93,8 @@ bool SourceMeasure::improve(SourceMoments& m) const {
   sy /= sum;
   m.x += 2 * sx;
   m.y += 2 * sy;
-  m.xx = std::max(2 * (sxx / sum - sx * sx), 0.1);
-  m.yy = std::max(2 * (syy / sum - sy * sy), 0.1);
+  m.xx = std::max(2 * (sxx / sum - sx * sx), least_variance_px2);
+  m.yy = std::max(2 * (syy / sum - sy * sy), least_variance_px2);
   m.xy = 2 * (sxy / sum - sx * sy);
   m.flux = 2 * sum;  // the weight halves a Gaussian's light
   return std::isfinite(m.x + m.y) && contains(int(std::lround(m.x)), int(std::lround(m.y)));
@@ -129,6 +129,10 @@ std::optional<TrailFit> SourceMeasure::fit(const SourceMoments& m, double sigma_
   if (trail) {
     start.length_px = length;
     start.angle_rad = m.angle_rad();
+  } else if (settings_.motion) {
+    const PixelPosition moved = settings_.motion->trail_at({m.x, m.y});
+    start.length_px = std::hypot(moved.x_px, moved.y_px);
+    start.angle_rad = std::atan2(moved.y_px, moved.x_px);
   }
   std::vector<FitPixel> pixels;
   const double c = std::cos(start.angle_rad), s = std::sin(start.angle_rad);

@@ -24,7 +24,7 @@ constexpr double rise_of_a_star = 5.0;   // over a saddle, in noise of a pixel
 /// Width of the Gaussian that fits images best, by golden section; the worse half may be blends.
 double best_sigma_px(const SourceMeasure& measure,
                      std::span<const std::optional<SourceMoments>> moments, double start_px) {
-  constexpr std::size_t brightest = 400, most_images = 50;
+  constexpr std::size_t brightest = 400, most_images = 200;
   std::vector<SourceMoments> images;
   for (const auto& m : moments)
     if (m && images.size() < brightest) images.push_back(*m);
@@ -33,12 +33,12 @@ double best_sigma_px(const SourceMeasure& measure,
   for (std::size_t i = 0; i * every < images.size(); ++i) images[i] = images[i * every];
   images.resize((images.size() + every - 1) / every);
   const auto misfit = [&](double sigma_px) {
-    std::vector<double> chi2;
+    double sum = 0.0;
     for (const SourceMoments& m : images) {
       const auto fit = measure.fit(m, sigma_px);
-      chi2.push_back(fit ? fit->reduced_chi2() : 1e9);
+      sum += std::log(fit ? std::clamp(fit->reduced_chi2(), 0.5, 100.0) : 100.0);
     }
-    return quantile_of(std::move(chi2), 0.3);
+    return sum;
   };
   return golden_section(misfit, 0.75 * start_px, 1.5 * start_px, 0.004 * start_px).at;
 }
@@ -115,7 +115,7 @@ StarImages::StarImages(const CountImage& counts, const StarSourceSettings& setti
   });
   std::vector<double> widths;
   for (const auto& m : moments_)
-    if (m && widths.size() < 100) widths.push_back(m->minor_sigma());
+    if (m && !m->collapsed() && widths.size() < 100) widths.push_back(m->minor_sigma());
   sigma_px_ = best_sigma_px(measure_, moments_, widths.empty() ? filter_px : median_of(widths));
 }
 

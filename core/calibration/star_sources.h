@@ -5,6 +5,7 @@
 #include "core/astrometry/plate_match.h"
 #include "core/base/image.h"
 #include "core/base/parallel.h"
+#include "core/detection/star_motion.h"
 
 namespace dmise {
 
@@ -15,6 +16,7 @@ struct StarSourceSettings {
   double psf_fwhm_px = 0.0;        // about; 0: not known
   double least_snr = 6.0;
   std::size_t most = 2000;  // the brightest, and further ones until as many are not saturated
+  const StarMotion* motion = nullptr;  // short trails that images have, if known
 };
 
 /// Returns stars, and sources that look like them, by falling flux [e-]. Places are of a fitted

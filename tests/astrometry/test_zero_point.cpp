@@ -64,6 +64,43 @@ TEST(ZeroPoint, KeepsTheBelievedExtinctionWhereAirmassesAreAlike) {
   EXPECT_NEAR(z->zero_point_mag, 17.25, 0.02);
 }
 
+// Light that scintillates by a log-normal factor of mean 1, with a variance that goes as the third
+// power of the airmass: the mean of its magnitudes is 0.02 mag too faint at the zenith and 0.3 at
+// an airmass of 2.5.
+TEST(ZeroPoint, ScintillationMovesItLittle) {
+  double sum = 0.0, sum_k = 0.0, squares = 0.0;
+  constexpr int frames = 40;
+  for (unsigned seed = 0; seed < frames; ++seed) {
+    auto stars = stars_of(600, 0.02, seed, 1.5);
+    std::mt19937_64 random(seed + 1000);
+    std::normal_distribution<double> normal;
+    for (PhotometricStar& s : stars) {
+      const double variance = std::log1p(0.015 * std::pow(s.airmass, 3));
+      s.instrumental_mag -=
+          2.5 / std::log(10.0) * (std::sqrt(variance) * normal(random) - 0.5 * variance);
+    }
+    const auto z = fit_zero_point(stars, std::nullopt);
+    ASSERT_TRUE(z && z->extinction_fitted);
+    sum += z->zero_point_mag - 17.25;
+    sum_k += z->extinction_mag_per_airmass - 0.21;
+    squares += std::pow((z->zero_point_mag - 17.25) / z->sigma(0), 2);
+  }
+  EXPECT_LT(std::abs(sum / frames), 0.02);
+  EXPECT_LT(std::abs(sum_k / frames), 0.02);
+  EXPECT_LT(squares / frames, 2.0);
+}
+
+TEST(ZeroPoint, KeepsTheBelievedExtinctionIfTheStarsDetermineItWorse) {
+  const auto stars = stars_of(100, 0.05, 7, 0.6);
+  const auto believed = fit_zero_point(stars, 0.21), unknown = fit_zero_point(stars, std::nullopt);
+  ASSERT_TRUE(believed && unknown);
+  EXPECT_FALSE(believed->extinction_fitted);
+  EXPECT_EQ(believed->extinction_mag_per_airmass, 0.21);
+  EXPECT_NEAR(believed->zero_point_mag, 17.25, 3 * believed->sigma(0));
+  EXPECT_TRUE(unknown->extinction_fitted);
+  EXPECT_NEAR(unknown->extinction_mag_per_airmass, 0.21, 3 * unknown->sigma(2));
+}
+
 TEST(ZeroPoint, OfFewStarsIsTheirMedianAndOfNoneEmpty) {
   EXPECT_FALSE(fit_zero_point({}, 0.2));
   for (std::size_t n = 1; n < 6; ++n) {

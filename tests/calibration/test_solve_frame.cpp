@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <filesystem>
+#include <random>
 
 #include "bench/simulated_frame.h"
 #include "core/base/error.h"
 #include "core/frames/quaternion.h"
+#include "core/sky/airmass.h"
 #include "core/sky/star_cache.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
@@ -135,6 +137,83 @@ TEST(SolveFrame, StartsFromADirectionWithoutARoll) {
         EXPECT_LE(s.plate.tried, whole.plate.tried);
       }
     }
+}
+
+/// The sky above a site by a fisheye lens of 150 deg, whose pixels of 14 arcmin are crowded: the
+/// stars through air that dims them and makes them scintillate by 4 % at the zenith.
+Frame draw_all_sky(double ra_rad, double dec_rad, double extinction, unsigned seed) {
+  constexpr int wide = 640, high = 480;
+  constexpr double scintillation2 = 0.002, true_zero_point_mag = 12.0;
+  FrameHeader h =
+      simulated::camera_header(wide, high, 0.5 * wide / (75 * deg), dec_rad, 5, false, ra_rad);
+  h.projection = Projection::equidistant;
+  h.wcs.projection = Projection::equidistant;
+  h.zero_point_mag = 0.0;  // not known
+  h.extinction_mag_per_airmass = extinction;
+  h.psf_fwhm_px = 1.7;
+  const Vec<Gcrs> zenith = from_spherical<Gcrs>(ra_rad, dec_rad);
+  h.sensor_position_m = zenith * 6.378e6;
+  h.site = SitePlace{};
+  h.air = Weather{.pressure_hpa = 0.0};
+  const Tt tt = Clock(parse_utc(h.middle_utc)).tt({});
+  Observer observer = space_observer(h.sensor_position_m, {}, tt, solar_system(tt));
+  observer.air = Air{zenith, Refraction()};
+  const PlateSky sky(stars(), observer);
+  const PlateModel model{.projection = h.projection,
+                         .camera_from_gcrs = rotation_of<CameraFrame, Gcrs>(h.camera_from_gcrs[1]),
+                         .focal_length_px = h.focal_length_px,
+                         .centre = {(wide - 1) / 2.0, (high - 1) / 2.0}};
+  simulated::SimulatedFrame frame(h, wide, high, 600, seed);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  for (const SeenStar& s : sky.brightest(zenith, 85 * deg, 100000)) {
+    const auto at = model.pixel(s.direction);
+    if (!at || at->x_px < -3 || at->y_px < -3 || at->x_px > wide + 2 || at->y_px > high + 2)
+      continue;
+    const double x = airmass(std::asin(dot(s.direction, zenith)));
+    const double variance = std::log1p(scintillation2 * x * x * x);
+    const double factor = std::exp(std::sqrt(variance) * normal(random) - 0.5 * variance);
+    frame.add_point(at->x_px, at->y_px,
+                    h.exposure_s * factor *
+                        std::pow(10, 0.4 * (true_zero_point_mag - s.v_mag - extinction * x)));
+  }
+  return {frame.expose(), h};
+}
+
+// Faint stars are in blends, and are found where noise or scintillation makes them bright.
+TEST(SolveFrame, ZeroPointsOfAllSkyFramesAreRight) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  Threads one(1);
+  unsigned seed = 0;
+  for (const double ra_rad : {0.3, 3.0})
+    for (const double extinction : {0.17, 0.5}) {
+      Frame frame = draw_all_sky(ra_rad, 0.59, extinction, ++seed);
+      const FrameSolution s = solve_frame(frame, stars(), {}, one);
+      ASSERT_TRUE(s.zero_point);
+      const ZeroPoint& z = *s.zero_point;
+      EXPECT_NEAR(z.zero_point_mag, 12.0, 0.03) << ra_rad << " " << extinction;
+      EXPECT_NEAR(z.zero_point_mag, 12.0, 3 * z.sigma(0)) << ra_rad << " " << extinction;
+      frame.header.unknown.add(FrameFact::extinction);
+      frame.header.extinction_mag_per_airmass = 0.0;
+      const FrameSolution free = solve_frame(frame, stars(), {}, one);
+      ASSERT_TRUE(free.zero_point && free.zero_point->extinction_fitted);
+      EXPECT_NEAR(free.zero_point->extinction_mag_per_airmass, extinction,
+                  3 * free.zero_point->sigma(2));
+      EXPECT_FALSE(solved_header(frame.header, free).unknown.has(FrameFact::extinction));
+    }
+}
+
+// Of 14 deg near the zenith: the zero point then holds the air.
+TEST(SolveFrame, ExtinctionThatIsNotFittedStaysUnknown) {
+  FrameHeader h;
+  h.unknown.add(FrameFact::extinction);
+  h.unknown.add(FrameFact::zero_point);
+  FrameSolution s;
+  s.plate.fit.model.camera_from_gcrs = rotation_of<CameraFrame, Gcrs>({});
+  s.zero_point = ZeroPoint{.zero_point_mag = 18.0};
+  const FrameHeader solved = solved_header(h, s);
+  EXPECT_TRUE(solved.unknown.has(FrameFact::extinction));
+  EXPECT_FALSE(solved.unknown.has(FrameFact::zero_point));
 }
 
 TEST(SolveFrame, SolvesAMirroredFrame) {
