@@ -41,16 +41,16 @@ void print_detections(const DetectOptions& o) {
   };
   FrameNotes last;
   read_frames_of(o.frame, *o.choice, threads, [&](const Frame& frame) {
-    if (frame.notes != last) print_notes(o.frame, frame.notes);
-    last = frame.notes;
     if (frame.header.shutter_closed())
       std::fprintf(stderr, "note: %s: the shutter was closed because of %s: nothing to detect\n",
                    o.frame.c_str(), excluding_text(frame.header.excluded).c_str());
     auto found = detected(detector, o, frame, threads);
+    if (found.notes != last) print_notes(o.frame, found.notes);
+    last = found.notes;
     if (found.solution)
       std::fprintf(stderr, "note: %s: solved: %d stars, %.3f px rms\n", o.frame.c_str(),
                    found.solution->plate.fit.count, found.solution->plate.fit.rms_px);
-    const auto lines = as_lines(std::move(found.detection), found.header, frame.notes);
+    const auto lines = as_lines(std::move(found.detection), found.header, found.notes);
     if (o.report) std::printf("%s\n", lines.report.c_str());
     for (const auto& line : lines.lines) std::printf("%s\n", line.c_str());
   });

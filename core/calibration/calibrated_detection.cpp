@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -23,6 +25,35 @@ bool is_wrong(const DetectionResult& result) {
          std::max(most_shift_px, most_shift_sigmas * sigma_px);
 }
 
+/// Removes the notes of facts that a solution has found.
+void remove_found(const UnknownFacts& unknown, FrameNotes& notes) {
+  for (const auto& [fact, begin] : {std::pair{FrameFact::pointing, "pointing: "},
+                                    {FrameFact::focal_length, "focal length: "},
+                                    {FrameFact::zero_point, "zero point: "}})
+    if (!unknown.has(fact))
+      std::erase_if(notes.missing,
+                    [&](const std::string& text) { return text.starts_with(begin); });
+}
+
+/// Notes what the catalogue would need; the last one is found by a solution.
+void note_unused_catalogue(const UnknownFacts& unknown, FrameNotes& notes) {
+  if (CatalogueSky::can_expect(unknown)) return;
+  const char* lacks = unknown.has(FrameFact::time)       ? "a time"
+                      : unknown.has(FrameFact::exposure) ? "an exposure time"
+                      : unknown.has(FrameFact::pointing) ? "a pointing"
+                                                         : "a zero point";
+  notes.missing.push_back(std::string("stars: the catalogue is not used without ") + lacks);
+}
+
+/// Notes that there is no plate near a header's pointing.
+void note_no_plate(const UnknownFacts& unknown, FrameNotes& notes) {
+  const std::string where = unknown.has(FrameFact::pointing)
+                                ? "near RA and DEC"
+                                : "near the WCS, which they do not confirm";
+  notes.missing.push_back("stars: no plate was found " + where +
+                          "; --blind searches the whole sky");
+}
+
 }  // namespace
 
 CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map_(std::move(map)) {
@@ -36,16 +67,18 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Thread
   const auto detected_by = [&](const FrameHeader& header) {
     return dmise::detect(frame.counts, header, unusable, threads, sky_ ? &*sky_ : nullptr);
   };
-  Result result{.detection = {}, .header = frame.header, .solution = std::nullopt};
+  Result result{
+      .detection = {}, .header = frame.header, .solution = std::nullopt, .notes = frame.notes};
   if (frame.header.shutter_closed()) blind = false;  // there are no stars
   if (!blind) {
     result.detection = detected_by(frame.header);
     const Observation& o = frame.header.observation;
     const bool has_hint = !unknown.has(FrameFact::pointing) || (o.ra_rad && o.dec_rad);
-    const bool may_be_solved =
-        map_ && has_hint && !unknown.has(FrameFact::focal_length) && !unknown.has(FrameFact::time);
-    if (!may_be_solved || (CatalogueSky::can_expect(unknown) && !is_wrong(result.detection)))
+    const bool may_be_solved = map_ && has_hint && !unknown.has(FrameFact::time);
+    if (!may_be_solved || (CatalogueSky::can_expect(unknown) && !is_wrong(result.detection))) {
+      if (map_) note_unused_catalogue(unknown, result.notes);
       return result;
+    }
   }
   if (!map_) throw Error("blind detection needs a catalogue of stars");
   try {
@@ -53,12 +86,15 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Thread
         solve_frame(frame, *map_, {.blind = blind, .elsewhere = blind, .search = {}}, threads);
   } catch (const Error&) {
     if (blind) throw;
+    note_no_plate(unknown, result.notes);
     return result;  // clouds, or what is there are no stars of the catalogue
   }
   result.header = solved_header(frame.header, *result.solution);
   if (after_solution && unknown.has(FrameFact::pointing))
     after_solution(frame.counts, result.header);
   result.detection = detected_by(result.header);
+  remove_found(result.header.unknown, result.notes);
+  note_unused_catalogue(result.header.unknown, result.notes);
   return result;
 }
 

@@ -18,6 +18,7 @@ class CalibratedDetector {
     DetectionResult detection;
     FrameHeader header;                     // by which it detected
     std::optional<FrameSolution> solution;  // if the header's pointing was wrong
+    FrameNotes notes;  // the frame's, of what is still missing, and why the catalogue is not used
   };
 
   /// Called with the counts and the header of a solved frame whose pointing was unknown, before

@@ -67,6 +67,56 @@ TEST_F(CalibratedDetection, BelievesAHeaderThatIsRight) {
   expect_satellite(result.detection);
 }
 
+/// The only text of a list that begins so; empty if there is none.
+std::string noted(const std::vector<std::string>& notes, const std::string& begin) {
+  for (const std::string& text : notes)
+    if (text.starts_with(begin)) return text;
+  return {};
+}
+
+TEST_F(CalibratedDetection, NotesThatTheStarsAreNotWhereTheWcsHasThem) {
+  const auto result =
+      CalibratedDetector(map).detect({drawn(1.0), header_at(ra_rad + 0.3)}, threads);
+  EXPECT_FALSE(result.solution);
+  EXPECT_EQ(noted(result.notes.missing, "stars: "),
+            "stars: no plate was found near the WCS, which they do not confirm; --blind searches "
+            "the whole sky");
+}
+
+TEST_F(CalibratedDetection, NotesWhyTheCatalogueIsNotUsed) {
+  for (const auto& [fact, text] :
+       {std::pair{FrameFact::time, "a time"}, {FrameFact::exposure, "an exposure time"}}) {
+    FrameHeader header = truth;
+    header.unknown.add(fact);
+    header.unknown.add(FrameFact::zero_point);
+    const auto result = CalibratedDetector(map).detect({drawn(1.0), header}, threads);
+    EXPECT_EQ(noted(result.notes.missing, "stars: "),
+              std::string("stars: the catalogue is not used without ") + text);
+  }
+}
+
+TEST_F(CalibratedDetection, DropsTheNotesOfWhatASolutionFinds) {
+  FrameHeader header = truth;
+  header.unknown.add(FrameFact::zero_point);
+  Frame frame{drawn(1.0), header};
+  frame.notes.missing = {"band: no FILTER", "zero point: no magnitudes; dmise solve finds it"};
+  const auto result = CalibratedDetector(map).detect(frame, threads);
+  ASSERT_TRUE(result.solution);
+  EXPECT_EQ(result.notes.missing, std::vector<std::string>{"band: no FILTER"});
+}
+
+TEST_F(CalibratedDetection, FindsItByADirectionWithoutAFocalLength) {
+  FrameHeader believed = header_at(0.0);
+  believed.unknown.add(FrameFact::pointing);
+  believed.unknown.add(FrameFact::focal_length);
+  believed.focal_length_px = 1e4;
+  believed.observation.ra_rad = ra_rad;
+  believed.observation.dec_rad = dec_rad + 0.017;
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, threads);
+  ASSERT_TRUE(result.solution);
+  expect_satellite(result.detection);
+}
+
 // Two and a half degrees off: directions are those of the stars, not those of the header.
 TEST_F(CalibratedDetection, FindsWhereTheFramePoints) {
   const FrameHeader believed = header_at(ra_rad + 0.05);
