@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "core/base/error.h"
@@ -66,7 +67,19 @@ void print_text(const FrameSolution& s) {
               z.extinction_fitted ? "" : " (not fitted)");
 }
 
+/// Refuses a file to write that would not be what its name says, or is the frame itself.
+void check_out(const SolveOptions& o) {
+  if (o.out.empty()) return;
+  for (const char* ending : {".gz", ".fz", ".bz2"})
+    if (o.out.ends_with(ending))
+      throw ConfigError("--out: an uncompressed file is written, got " + o.out);
+  std::error_code none;
+  if (std::filesystem::equivalent(o.frame, o.out, none))
+    throw ConfigError("--out: must not be the frame itself, got " + o.out);
+}
+
 void solve(const SolveOptions& o) {
+  check_out(o);
   Threads threads(o.threads);
   const Frame frame = read_any_frame(o.frame, *o.choice, threads);
   print_notes(o.frame, frame.notes);
@@ -113,7 +126,8 @@ void add_solve_command(CLI::App& app) {
       ->check(number_between(1e-3, 1e5))
       ->excludes(field);
   add_star_catalogue_option(*command, o->catalogue, false);
-  command->add_option("--out", o->out, "FITS file of the frame with the solved header");
+  command->add_option("--out", o->out,
+                      "FITS file of the frame with the solved header, uncompressed");
   command->add_flag("--json", o->json, "print one line of JSON");
   add_threads_option(*command, o->threads);
   command->callback([o, field] {

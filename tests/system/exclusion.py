@@ -83,6 +83,10 @@ def test(binary, directory):
           "the shutter was closed because of the Moon" in found.stderr, f"detect says it in one line: {found.stderr}")
     solved = done("solve", frame, code=1)
     check("the shutter was closed because of the Moon" in solved.stderr, f"solve, too: {solved.stderr}")
+    before = frame.read_bytes()
+    for out, why in ((frame, "must not be the frame itself"), (directory / "solved.fits.gz", "an uncompressed file is written")):
+        check(why in done("solve", frame, "--out", out, code=2).stderr, f"solve --out {out.name} is refused")
+    check(frame.read_bytes() == before and not (directory / "solved.fits.gz").exists(), "and nothing is written")
 
     passes = {name: done("visible", path, "--sensor", name, "--csv", "--print-only", "--duration", "10800").stdout.splitlines()
               for name in ("closed", "flagged", "plain")}
