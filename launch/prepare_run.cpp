@@ -4,31 +4,39 @@
 
 #include "core/base/error.h"
 #include "launch/commands.h"
+#include "launch/notes.h"
 #include "launch/resume_point.h"
 
 namespace dmise {
 
 RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bool force) {
   using Content = RunDirectory::Content;
-  const Content content = force ? Content::empty : directory.content();
-  if (content == Content::same_run_complete) {
+  directory.check_sensor_directories();
+  const Content content = directory.content();
+  if (!force && content == Content::same_run_complete) {
     std::printf("%s contains this run, complete; --force repeats it\n", directory.path().c_str());
     if (!has_index_page(directory)) write_index_page(directory);
     std::fputs(what_to_open(directory, scenario).c_str(), stdout);
     return {.needed = false};
   }
-  if (content == Content::another_run)
+  if (!force && content == Content::another_run)
     throw ConfigError(
         directory.path() +
         ": contains the products of another run; --force replaces them, --out writes elsewhere");
+  const std::string found = content == Content::no_run ? directory.in_the_way() : "";
+  if (!force && !found.empty())
+    throw ConfigError(
+        found + ": is in the way, and no run.json in " + directory.path() +
+        " says that it is of a run; --force replaces products, --out writes elsewhere");
   RunStart start;
-  if (content == Content::same_run_unfinished) start.first_tick = resume_tick(scenario, directory);
+  if (!force && content == Content::same_run_unfinished)
+    start.first_tick = resume_tick(scenario, directory);
   if (start.first_tick > 0) {
     std::printf(
-        "%s contains this run, interrupted: continuing at tick %ld of %ld; --force restarts\n",
+        "%s contains this run, unfinished: continuing at tick %ld of %ld; --force restarts\n",
         directory.path().c_str(), long(start.first_tick), long(scenario.last_tick()));
     std::fflush(stdout);
-  } else {
+  } else if (content != Content::no_run || !found.empty()) {
     directory.clear();
   }
   mark_begun(directory);
@@ -47,11 +55,13 @@ void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutc
   }
   std::fputs(summary_text(directory, scenario, outcome).c_str(), stdout);
   if (outcome.status == "failed") throw Error(outcome.reason);
+  if (!outcome.reason.empty())
+    print_note("the run is not complete: " + outcome.reason + "; the same command continues it");
   if (const int code = exit_code(outcome.status)) throw ExitWith{code};
 }
 
 int exit_code(const std::string& status) {
-  return status == "complete" ? 0 : status == "interrupted" ? 130 : 1;
+  return status == "interrupted" ? 130 : status == "failed" ? 1 : 0;
 }
 
 }  // namespace dmise

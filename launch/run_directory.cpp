@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string_view>
 #include <tuple>
 
 #include "core/base/digest.h"
@@ -27,6 +28,62 @@ const char* value_in(const std::string& line, const std::string& key) {
 
 double number_in(const std::string& line, const std::string& key) {
   return std::strtod(value_in(line, key), nullptr);
+}
+
+/// run.json while products of an earlier run are removed.
+constexpr const char* clearing = "{\"status\":\"clearing\"}\n";
+
+/// Products of a run, beside those in the directories of its nodes and run.json.
+constexpr const char* run_files[] = {"detections.jsonl", "truth.jsonl",     "frames.jsonl",
+                                     "positions.csv",    "positions.jsonl", "tracks.jsonl",
+                                     "tasks.jsonl",      "tracks.svg",      "index.html"};
+
+/// Of files that ProductWriter and CueJournal write.
+bool is_product_of_sensor(const std::string& file) {
+  constexpr std::string_view partial = ".partial", frame = "frame-", digits = "0123456789";
+  constexpr std::string_view tables[] = {"frames.jsonl", "detections.jsonl", "truth.jsonl",
+                                         "cost.jsonl", "tasks.journal"};
+  constexpr std::string_view endings[] = {".fits",       "-sources.fits", "-background.fits",
+                                          "-noise.fits", "-radiance.exr", ".png",
+                                          "-marked.png", ".stars.csv"};
+  std::string_view name = file;
+  if (name.ends_with(partial)) name.remove_suffix(partial.size());
+  if (std::ranges::find(tables, name) != std::end(tables)) return true;
+  const auto end = name.find_first_not_of(digits, frame.size());
+  return name.starts_with(frame) && end != name.npos && end > frame.size() &&
+         std::ranges::find(endings, name.substr(end)) != std::end(endings);
+}
+
+/// NAME-NUMBER.oem.
+bool is_ephemeris(const std::string& name) {
+  constexpr std::string_view ending = ".oem";
+  if (!name.ends_with(ending) || name.size() == ending.size()) return false;
+  const auto dash = name.find_last_not_of("0123456789", name.size() - ending.size() - 1);
+  return dash != name.npos && name[dash] == '-' && dash + 1 < name.size() - ending.size();
+}
+
+/// Whether the lines in a directory's frames.jsonl are those of a sensor of its name.
+bool is_sensor_directory(const fs::path& directory) {
+  std::ifstream file(directory / "frames.jsonl");
+  std::string line;
+  return std::getline(file, line) &&
+         line.starts_with("{\"sensor\":\"" + directory.filename().string() + "\",\"frame\":");
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code failure;
+  fs::remove(path, failure);
+  if (failure) throw Error(path.string() + ": can't be removed: " + failure.message());
+}
+
+/// Removes the products in a directory, then the directory if it is empty and not a link.
+void remove_products(const fs::path& directory, bool (*is_product)(const std::string& name)) {
+  std::error_code ignored;
+  std::vector<fs::path> products;
+  for (const auto& entry : fs::directory_iterator(directory, ignored))
+    if (is_product(entry.path().filename().string())) products.push_back(entry.path());
+  for (const auto& product : products) remove_file(product);
+  if (!fs::is_symlink(directory, ignored)) fs::remove(directory, ignored);
 }
 
 }  // namespace
@@ -63,32 +120,51 @@ RunDirectory::RunDirectory(std::string path, const Scenario& scenario, std::stri
 }
 
 RunDirectory::Content RunDirectory::content() const {
-  if (!path_exists(file("run.json"))) {
-    for (const auto& sensor : scenario_.sensors)
-      if (path_exists(file(sensor.name))) return Content::same_run_unfinished;
-    return Content::empty;
-  }
+  if (!path_exists(file("run.json"))) return Content::no_run;
   const std::string text = read_text_file(file("run.json"));
+  if (text == clearing) return Content::half_cleared;
   if (text.find("\"digest\":\"" + digest_ + "\"") == std::string::npos) return Content::another_run;
   return text.find("\"status\":\"complete\"") == std::string::npos ? Content::same_run_unfinished
                                                                    : Content::same_run_complete;
 }
 
-void RunDirectory::clear() {
+std::string RunDirectory::in_the_way() const {
   std::error_code ignored;
-  // A subdirectory with a frames.jsonl is a sensor's, of this run or another.
+  for (const char* name : run_files)
+    if (fs::exists(fs::symlink_status(file(name), ignored))) return file(name);
+  std::vector<std::string> directories{fusion_node};
+  for (const auto& sensor : scenario_.sensors) directories.push_back(sensor.name);
+  if (scenario_.output.positions_oem) directories.push_back("positions");
+  for (const auto& name : directories) {
+    const bool is_empty =
+        fs::is_directory(file(name), ignored) && fs::is_empty(file(name), ignored);
+    if (!is_empty && fs::exists(fs::symlink_status(file(name), ignored))) return file(name);
+  }
+  return "";
+}
+
+void RunDirectory::check_sensor_directories() const {
+  for (const auto& sensor : scenario_.sensors)
+    if (path_exists(file(sensor.name) + "/run.json"))
+      throw ConfigError(file(sensor.name) + ": is the directory of a run, sensor " + sensor.name +
+                        " can't write there; --out writes elsewhere");
+}
+
+void RunDirectory::clear() {
+  write_file_whole(file("run.json"), clearing);
+  for (const char* name : run_files) remove_file(file(name));
+  std::error_code ignored;
+  std::vector<fs::path> sensors;
   for (const auto& entry : fs::directory_iterator(path_, ignored))
-    if (entry.is_directory(ignored) && path_exists(entry.path() / "frames.jsonl"))
-      fs::remove_all(entry.path(), ignored);
-  for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
-  for (const char* name :
-       {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "positions.csv",
-        "positions.jsonl", "tracks.jsonl", "tasks.jsonl", "tracks.svg", "index.html"})
-    fs::remove(file(name), ignored);
-  fs::remove_all(file(fusion_node), ignored);
-  for (const auto& entry : fs::directory_iterator(file("positions"), ignored))
-    if (entry.path().extension() == ".oem") fs::remove(entry.path(), ignored);
-  fs::remove(file("positions"), ignored);  // if it is empty
+    if (!entry.is_symlink(ignored) && is_sensor_directory(entry.path()))
+      sensors.push_back(entry.path());
+  for (const auto& sensor : scenario_.sensors) sensors.emplace_back(file(sensor.name));
+  for (const auto& sensor : sensors)
+    if (!path_exists(sensor / "run.json")) remove_products(sensor, is_product_of_sensor);
+  remove_products(file(fusion_node), [](const std::string& name) {
+    return name == "inputs.journal" || name == "tracks.jsonl" || name == "tasks.jsonl";
+  });
+  remove_products(file("positions"), is_ephemeris);
 }
 
 void RunDirectory::merge_lines() const {

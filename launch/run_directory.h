@@ -21,11 +21,19 @@ class RunDirectory {
   const std::vector<std::string>& catalogue_sha256() const { return catalogue_sha256_; }
   RunLock& lock() { return *lock_; }
 
-  enum class Content { empty, same_run_complete, same_run_unfinished, another_run };
+  /// By its run.json. `no_run`: there is none; `half_cleared`: a process died in `clear`.
+  enum class Content { no_run, half_cleared, same_run_complete, same_run_unfinished, another_run };
   Content content() const;
 
-  /// Removes products of an earlier run, this or another: sensors' products, merged files,
-  /// run.json.
+  /// Path of what a run would overwrite or add to; empty if there is none. Without a run.json it
+  /// may be somebody else's.
+  std::string in_the_way() const;
+
+  /// Throws `ConfigError` if a sensor's directory is that of a run, which has a run.json.
+  void check_sensor_directories() const;
+
+  /// Removes products of an earlier run, this or another, by their names. Other files stay, and so
+  /// do the directories that hold them. Leaves a run.json that says so.
   void clear();
 
   /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by

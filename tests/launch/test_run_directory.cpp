@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/base/error.h"
+
 namespace dmise {
 namespace {
 
@@ -63,6 +65,72 @@ TEST_F(RunDirectories, MergedLinesAreOrderedByTimeAndSensor) {
                                 line("zulu", time, "30000000000", 2))
         << name;
   }
+}
+
+TEST_F(RunDirectories, ClearingRemovesProductsAndNothingElse) {
+  const std::string sensor_line = R"({"sensor":"old","frame":1,"start_ns":0})"
+                                  "\n";
+  for (const char* product :
+       {"frames.jsonl", "detections.jsonl", "truth.jsonl", "cost.jsonl", "tasks.journal",
+        "frame-000001.fits", "frame-1234567.fits.partial", "frame-000001-sources.fits",
+        "frame-000001-background.fits", "frame-000001-noise.fits", "frame-000001-radiance.exr",
+        "frame-000001.png", "frame-000001-marked.png", "frame-000001.stars.csv"})
+    for (const char* sensor : {"alpha", "old"}) write(sensor, product, sensor_line);
+  write("fusion-node", "inputs.journal", "1");
+  write("positions", "ISS-25544.oem", "1");
+  write("", "index.html", "1");
+  write("", "run.json", R"({"status":"complete","digest":"another"})");
+
+  const std::vector<std::pair<std::string, std::string>> others = {
+      {"alpha", "thesis.txt"},       {"alpha", "frame-000001.txt"},
+      {"alpha", "frame-.fits"},      {"positions", "ISS.oem"},
+      {"first", "run.json"},         {"first", "frames.jsonl"},
+      {"someone", "frames.jsonl"},   {"", "notes.txt"},
+      {"first/old", "frames.jsonl"}, {"alpha/deep", "frames.jsonl"}};
+  for (const auto& [where, name] : others) write(where, name, sensor_line);
+
+  RunDirectory run(directory, scenario, "digest");
+  EXPECT_EQ(run.content(), RunDirectory::Content::another_run);
+  run.clear();
+  EXPECT_EQ(run.content(), RunDirectory::Content::half_cleared);
+  std::size_t left = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
+    left += entry.is_regular_file() && !entry.path().filename().string().starts_with(".run-lock");
+  EXPECT_EQ(left, others.size() + 1);  // run.json
+  for (const auto& [where, name] : others)
+    EXPECT_TRUE(std::filesystem::exists(directory + "/" + where + "/" + name)) << where << name;
+  EXPECT_FALSE(std::filesystem::exists(directory + "/old"));
+  EXPECT_FALSE(std::filesystem::exists(directory + "/fusion-node"));
+}
+
+TEST_F(RunDirectories, FilesWithoutARunAreInTheWay) {
+  const RunDirectory run(directory, scenario, "digest");
+  write("first", "run.json", "{}");
+  write("", "notes.txt", "");
+  std::filesystem::create_directory(directory + "/alpha");
+  EXPECT_EQ(run.in_the_way(), "");
+  write("alpha", "thesis.txt", "");
+  EXPECT_EQ(run.in_the_way(), directory + "/alpha");
+  write("", "index.html", "");
+  EXPECT_EQ(run.in_the_way(), directory + "/index.html");
+}
+
+TEST_F(RunDirectories, NoSensorWritesIntoTheDirectoryOfARun) {
+  const RunDirectory run(directory, scenario, "digest");
+  run.check_sensor_directories();
+  write("mike", "run.json", "{}");
+  EXPECT_THROW(run.check_sensor_directories(), ConfigError);
+}
+
+// A run with dropped nodes, or ended early, goes on.
+TEST_F(RunDirectories, OnlyACompleteRunIsComplete) {
+  const RunDirectory run(directory, scenario, "digest");
+  for (const char* status : {"begun", "incomplete", "ended", "interrupted", "failed"}) {
+    write("", "run.json", std::string(R"({"status":")") + status + R"(","digest":"digest"})");
+    EXPECT_EQ(run.content(), RunDirectory::Content::same_run_unfinished) << status;
+  }
+  write("", "run.json", R"({"status":"complete","digest":"digest"})");
+  EXPECT_EQ(run.content(), RunDirectory::Content::same_run_complete);
 }
 
 }  // namespace
