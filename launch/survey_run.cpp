@@ -156,7 +156,12 @@ class Survey {
       const SensorConfig& sensor = scenario_.sensors[k];
       const std::string head = head_of(scenario_, sensor, command_, scene.model());
       const std::string directory = command_.out + "/" + sensor.name;
-      auto survey = read_survey(directory, head, sensor.name, population_.roster.objects.size());
+      bool damaged = false;
+      auto survey =
+          read_survey(directory, head, sensor.name, population_.roster.objects.size(), damaged);
+      if (damaged)
+        notes_.push_back(sensor.name +
+                         ": files of its survey are damaged or incomplete: it is surveyed again");
       if (survey) {
         ++known;
       } else {

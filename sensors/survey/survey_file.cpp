@@ -1,11 +1,13 @@
 #include "sensors/survey/survey_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
+#include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/paths.h"
@@ -32,13 +34,17 @@ class Reader {
     if (!std::filesystem::is_regular_file(path, ignored)) return;
     std::istringstream lines(read_text_file(path));
     std::string line;
-    if (!std::getline(lines, line) || line != "# " + head || !std::getline(lines, totals_) ||
-        !std::getline(lines, line) || line != columns)
-      return;
+    if (!std::getline(lines, line) || line != "# " + head) return;
+    has_head_ = true;
+    if (!std::getline(lines, totals_)) return;
+    body_ = lines.str().substr(std::size_t(std::max<std::streamoff>(0, lines.tellg())));
+    if (!std::getline(lines, line) || line != columns) return;
     while (std::getline(lines, line)) lines_.push_back(std::move(line));
     good_ = true;
   }
+  bool has_head() const { return has_head_; }
   bool good() const { return good_; }
+  const std::string& body() const { return body_; }
   void spoil() { good_ = false; }
   const std::string& totals() const { return totals_; }
 
@@ -69,11 +75,19 @@ class Reader {
   }
 
  private:
-  bool good_ = false;
-  std::string totals_;
+  bool has_head_ = false, good_ = false;
+  std::string totals_, body_;  // the second line; what follows it
   std::vector<std::string> lines_;
   std::string_view rest_;
 };
+
+/// Of the tables of a survey.
+std::string digest_of(const std::string& exposures, const std::string& map,
+                      const std::string& passes) {
+  Sha256 digest;
+  for (const std::string* table : {&exposures, &map, &passes}) digest.update(*table);
+  return digest.hex().substr(0, 32);
+}
 
 }  // namespace
 
@@ -81,46 +95,49 @@ void write_survey(const std::string& directory, const std::string& head, const S
                   const SurveyScene& scene, const Shells& shells) {
   make_directories(directory);
   const auto utc = [&](SimTime t) { return format_utc(scene.clock().utc(t), 3); };
-  const std::string totals = "# frames " + std::to_string(survey.frames) + " without state " +
-                             std::to_string(survey.without_state) +
-                             (survey.closed ? " closed " + std::to_string(survey.closed) : "") +
-                             "\n";
-  std::string text = "# " + head + "\n" + totals + exposure_columns + "\n";
+  std::string exposures = exposure_columns + std::string("\n");
   for (const auto& e : survey.exposures)
-    text += std::to_string(e.frame) + "," + std::to_string(e.middle.ns) + "," + utc(e.middle) +
-            "," + (e.sun_elevation_rad ? shortest_text(*e.sun_elevation_rad) : "") + "," +
-            std::to_string(e.in_field) + "," + std::to_string(e.sunlit) + "," +
-            shortest_text(e.expected) + "\n";
-  write_file_whole(directory + "/exposures.csv", text);
-
-  text = "# " + head + "\n" + totals + map_columns_line + "\n";
+    exposures += std::to_string(e.frame) + "," + std::to_string(e.middle.ns) + "," + utc(e.middle) +
+                 "," + (e.sun_elevation_rad ? shortest_text(*e.sun_elevation_rad) : "") + "," +
+                 std::to_string(e.in_field) + "," + std::to_string(e.sunlit) + "," +
+                 shortest_text(e.expected) + "\n";
+  std::string map = map_columns_line + std::string("\n");
   for (const auto& [key, cell] : survey.map)
-    text += std::to_string(key[0]) + "," + std::to_string(key[1]) + "," + std::to_string(key[2]) +
-            "," + std::to_string(180 / map_rows * key[1] - 90) + "," +
-            std::to_string(360 / map_columns * key[2] - 180) + "," + std::to_string(cell.looks) +
-            "," + std::to_string(cell.expected) + "," + shells.shells[key[0]].name + "\n";
-  write_file_whole(directory + "/map.csv", text);
-
-  text = "# " + head + "\n" + totals + pass_columns + "\n";
+    map += std::to_string(key[0]) + "," + std::to_string(key[1]) + "," + std::to_string(key[2]) +
+           "," + std::to_string(180 / map_rows * key[1] - 90) + "," +
+           std::to_string(360 / map_columns * key[2] - 180) + "," + std::to_string(cell.looks) +
+           "," + std::to_string(cell.expected) + "," + shells.shells[key[0]].name + "\n";
+  std::string passes = pass_columns + std::string("\n");
   for (const auto& p : survey.passes)
-    text += std::to_string(p.object) + "," +
-            std::to_string(scene.roster()->objects[p.object].catalogue_number) + "," +
-            std::to_string(p.first.ns) + "," + std::to_string(p.last.ns) + "," + utc(p.first) +
-            "," + std::to_string(p.exposures) + "," + shortest_text(p.expected) + "," +
-            shortest_text(p.log_miss) + "," + shortest_text(p.best_snr) + "\n";
-  write_file_whole(directory + "/passes.csv", text);
+    passes += std::to_string(p.object) + "," +
+              std::to_string(scene.roster()->objects[p.object].catalogue_number) + "," +
+              std::to_string(p.first.ns) + "," + std::to_string(p.last.ns) + "," + utc(p.first) +
+              "," + std::to_string(p.exposures) + "," + shortest_text(p.expected) + "," +
+              shortest_text(p.log_miss) + "," + shortest_text(p.best_snr) + "\n";
+  const std::string head_lines = "# " + head + "\n# frames " + std::to_string(survey.frames) +
+                                 " without state " + std::to_string(survey.without_state) +
+                                 " closed " + std::to_string(survey.closed) + " digest " +
+                                 digest_of(exposures, map, passes) + "\n";
+  write_file_whole(directory + "/exposures.csv", head_lines + exposures);
+  write_file_whole(directory + "/map.csv", head_lines + map);
+  write_file_whole(directory + "/passes.csv", head_lines + passes);
 }
 
 std::optional<SensorSurvey> read_survey(const std::string& directory, const std::string& head,
-                                        const std::string& sensor, std::size_t objects) {
+                                        const std::string& sensor, std::size_t objects,
+                                        bool& damaged) {
   SensorSurvey survey{.sensor = sensor};
   Reader passes(directory + "/passes.csv", head, pass_columns);
-  if (!passes.good()) return std::nullopt;
+  Reader exposures(directory + "/exposures.csv", head, exposure_columns);
+  Reader map(directory + "/map.csv", head, map_columns_line);
+  damaged = passes.has_head() || exposures.has_head() || map.has_head();
+  if (!passes.good() || !exposures.good() || !map.good()) return std::nullopt;
   std::istringstream totals(passes.totals());
-  std::string hash, frames, without, state;
-  totals >> hash >> frames >> survey.frames >> without >> state >> survey.without_state;
-  if (!totals) return std::nullopt;
-  if (std::string closed; totals >> closed && !(totals >> survey.closed)) return std::nullopt;
+  std::string hash, word, digest;
+  totals >> hash >> word >> survey.frames >> word >> word >> survey.without_state >> word >>
+      survey.closed >> word >> digest;
+  if (!totals || digest != digest_of(exposures.body(), map.body(), passes.body()))
+    return std::nullopt;
   passes.each([&] {
     SurveyPass p;
     p.object = passes.number<std::uint32_t>();
@@ -135,7 +152,6 @@ std::optional<SensorSurvey> read_survey(const std::string& directory, const std:
     if (p.object >= objects) passes.spoil();
     survey.passes.push_back(p);
   });
-  Reader exposures(directory + "/exposures.csv", head, exposure_columns);
   exposures.each([&] {
     SurveyExposure e;
     e.frame = exposures.number<std::uint32_t>();
@@ -148,7 +164,6 @@ std::optional<SensorSurvey> read_survey(const std::string& directory, const std:
     e.expected = exposures.number<double>();
     survey.exposures.push_back(e);
   });
-  Reader map(directory + "/map.csv", head, map_columns_line);
   map.each([&] {
     std::array<std::uint16_t, 3> key;
     for (auto& k : key) k = map.number<std::uint16_t>();
@@ -159,6 +174,7 @@ std::optional<SensorSurvey> read_survey(const std::string& directory, const std:
     cell.expected = map.number<std::uint64_t>();
   });
   if (!passes.good() || !exposures.good() || !map.good()) return std::nullopt;
+  damaged = false;
   return survey;
 }
 
