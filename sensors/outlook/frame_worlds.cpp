@@ -5,6 +5,10 @@
 namespace dmise {
 namespace {
 
+/// Between environments within an exposure, at least. They run on by their rates: by less than a
+/// millimetre off in that time.
+constexpr double environment_every_s = 0.1;
+
 /// A scenario of this sensor alone with an environment at every tick.
 Scenario alone(const Scenario& scenario, const SensorConfig& sensor) {
   Scenario one;
@@ -18,6 +22,7 @@ Scenario alone(const Scenario& scenario, const SensorConfig& sensor) {
 
 ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices) {
   ObjectPopulation some;
+  some.ellipsoid = all.ellipsoid;
   for (const std::size_t i : indices) {
     for (const auto& attitude : all.attitudes)
       if (attitude.object == i)
@@ -48,10 +53,11 @@ World FrameWorlds::around(const FrameTimes& commanded, const ObjectPopulation& p
   world.add(std::make_shared<const ObjectRoster>(population.roster));
   const Ticks ticks = ticks_of(commanded);
   const SimTime end = exposure_span(sensor_, commanded).end;
+  const Tick every = std::max<Tick>(1, Tick(environment_every_s / scenario_.tick.seconds()));
   for (Tick tick = ticks.first; tick <= ticks.last; ++tick) {
     if (!population.roster.objects.empty())
       world.add(std::make_shared<const ObjectStates>(source.at(tick, scenario_.time_of(tick))));
-    if (scenario_.time_of(tick) > end) continue;
+    if (scenario_.time_of(tick) > end || (tick - ticks.first) % every != 0) continue;
     for (const auto& message : environment_.step(tick, {})) world.add(message.state);
   }
   return world;
