@@ -26,8 +26,8 @@ SCENARIOS = {
 KINDS = {"photometry_mag": "mag", "position_px": "px", "background_sigma": "sigma", "noise": "noise"}
 
 
-def figure(x):
-    return "no bound" if x is None else "0" if x < 1e-6 else f"{x:.2g}"
+def figure(x, missing="no bound"):
+    return missing if x is None else "0" if x < 1e-6 else f"{x:.2g}"
 
 
 def saving(row):
@@ -43,8 +43,8 @@ def rows_of(directory):
 def budget_table(rows):
     budgets = [row for row in rows if row["effect"] == "budget"]
     lines = [[row["level"], f"{row['seconds'] / row['reference_s']:.3f}", f"{1e3 * row['seconds']:.0f}"]
-             + [f"{figure(row['measured'][kind])} of {figure(row['bound'][kind])}" for kind in KINDS]
-             + [f"{row['residual_sigma']:.2g}", f"{100 * row['detected']:.0f} %"]
+             + [f"{figure(row['measured'][kind], '-')} of {figure(row['bound'][kind])}" for kind in KINDS]
+             + [f"{row['residual_sigma']:.2g}", "-" if row["detected"] is None else f"{100 * row['detected']:.0f} %"]
              for row in sorted(budgets, key=lambda row: row["seconds"])]
     head = ["budget", "time / reference", "ms"] + [f"{unit}, measured of bound" for unit in KINDS.values()]
     return report.table(head + ["rms residual, sigma", "detected"], lines)
@@ -56,10 +56,10 @@ def effect_table(rows):
         if row["effect"] == "budget":
             continue
         # What changes nothing in this scene is no trade.
-        if max(row["measured"][kind] for kind in KINDS) < 1e-6 and saving(row) == "under 1 %":
+        if max(row["measured"][kind] or 0.0 for kind in KINDS) < 1e-6 and saving(row) == "under 1 %":
             continue
         lines.append([f"`{row['effect']}`", row["level"], saving(row)]
-                     + [figure(row["measured"][kind]) for kind in KINDS])
+                     + [figure(row["measured"][kind], "-") for kind in KINDS])
     return report.table(["effect", "level", "time saved"] + list(KINDS.values()), lines)
 
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/base/formatted.h"
 #include "core/base/json.h"
@@ -38,7 +39,12 @@ void add_mark(ChartSeries& series, ChartPoint at) {
   series.lines.push_back({{at.x, at.y * 0.9}, {at.x, at.y * 1.1}});
 }
 
-std::string number(double value) { return formatted("%.3g", value); }
+std::string number(double value) { return std::isnan(value) ? "-" : formatted("%.3g", value); }
+
+/// JSON has neither NaN nor infinity.
+std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 }  // namespace
 
@@ -104,7 +110,9 @@ std::string tradeoff_page(const std::string& title, const std::vector<TradeoffRo
       "<body><h1>What accuracy costs</h1><p>" +
       title + "</p>\n" + chart_svg(budgets_chart(rows));
   for (const auto& kind : error_kinds) page += "\n" + chart_svg(effects_chart(rows, kind));
-  page += "\n<p>Errors: measured / bound.</p><table><tr><th>effect</th><th>level</th>";
+  page +=
+      "\n<p>Errors: measured / bound; -: nothing in the frame can show "
+      "it.</p><table><tr><th>effect</th><th>level</th>";
   for (const auto& kind : error_kinds)
     page += std::string("<th>") + kind.key + " [" + kind.unit + "]</th>";
   page +=
@@ -129,13 +137,10 @@ std::string tradeoff_json(const std::string& digest, const std::vector<TradeoffR
     json.begin_object().field("effect", row.effect).field("level", row.level);
     for (const auto& [key, error] : {std::pair{"bound", row.bound}, {"measured", row.measured}}) {
       json.key(key).begin_object();
-      for (const auto& kind : error_kinds) {
-        const double value = error.*kind.value;
-        json.field(kind.key, std::isfinite(value) ? std::optional(value) : std::nullopt);
-      }
+      for (const auto& kind : error_kinds) json.field(kind.key, finite(error.*kind.value));
       json.end_object();
     }
-    json.field("residual_sigma", row.residual_sigma).field("detected", row.detected);
+    json.field("residual_sigma", row.residual_sigma).field("detected", finite(row.detected));
     json.field("seconds", row.seconds).field("reference_s", row.reference_s).end_object();
   }
   return json.end_array().end_object().take() + "\n";

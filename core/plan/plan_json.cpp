@@ -25,7 +25,7 @@ void write_plan(JsonWriter& json, const EffectPlan& plan, const CostFactors& fac
   for (const auto& p : plan.planned) {
     json.key(p.facts->name).begin_object().field("level", p.level_name());
     if (p.cost_s > 0.0) json.field("predicted_s", predicted_s(p, factors));
-    if (p.decided || p.forced) json.field("why", why(p, plan));
+    if (p.decided || p.forced || plan.replayed) json.field("why", why(p, plan));
     if (p.error != ErrorBound{}) write_error(json.key("error"), p.error);
     if (p.decided && p.level > 0) write_error(json.key("error_of_next_lower"), p.cheaper);
     json.end_object();

@@ -44,40 +44,38 @@ KnapsackOption option_of(const PlannableEffect& effect, int level, const PlanFac
   return option;
 }
 
-Levels levels_of(const PlannableEffect& effect, const PlanFacts& facts, const EffectSet& asked) {
+/// `recorded`: takes its levels alone; null: all that may be taken.
+Levels levels_of(const PlannableEffect& effect, const PlanFacts& facts, const EffectSet& asked,
+                 const EffectSet* recorded = nullptr) {
   Levels levels{.effect = &effect, .forced = asked.is_forced(*effect.facts)};
   const int unplanned = asked.level(*effect.facts);
   // What a scenario must ask for, and what states no error, is left as it is.
   const bool fixed = levels.forced || !effect.error || !effect.facts->usual;
   for (int level = 0; level <= effect.facts->reference(); ++level) {
-    if (fixed && level != unplanned) continue;
+    if (recorded ? level != recorded->level(*effect.facts) : fixed && level != unplanned) continue;
     KnapsackOption option = option_of(effect, level, facts);
     if (fixed) option.error = {};
     // What must not be left out stays, whatever the budget.
-    if (!option.error.within(largest_budget)) continue;
+    if (!recorded && !option.error.within(largest_budget)) continue;
     levels.level.push_back(level);
     levels.options.push_back(option);
   }
   return levels;
 }
 
-EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts,
-                       const EffectSet& asked, const ErrorBound& budget) {
-  std::vector<KnapsackChoice> choices;
-  for (const auto& l : levels) choices.push_back(l.options);
-  const KnapsackResult result = solve_knapsack(choices, budget);
-  EffectPlan plan{.effects = asked, .budget = budget, .least_cost_s = result.least_cost_s};
+/// The plan that takes one option of each effect.
+EffectPlan plan_of(const std::vector<Levels>& levels, const std::vector<std::size_t>& option,
+                   const PlanFacts& facts, const EffectSet& asked, const ErrorBound& budget) {
+  EffectPlan plan{.effects = asked, .budget = budget};
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const Levels& l = levels[i];
-    const std::size_t taken = result.option[i];
+    const std::size_t taken = option[i];
     PlannedEffect planned{.facts = l.effect->facts,
                           .level = l.level[taken],
                           .error = l.options[taken].error,
                           .cost_s = l.options[taken].cost_s,
                           .forced = l.forced,
                           .decided = l.level.size() > 1};
-    if (l.effect->error && planned.level != l.effect->facts->reference())
-      planned.stated = l.effect->error(planned.level, facts);
     for (int lower = planned.level - 1; planned.decided && lower >= 0; --lower) {
       planned.cheaper = l.effect->error(lower, facts);
       if (planned.cheaper != planned.error) break;
@@ -87,6 +85,16 @@ EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts
     plan.cost_s += planned.cost_s;
     plan.planned.push_back(planned);
   }
+  return plan;
+}
+
+EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts,
+                       const EffectSet& asked, const ErrorBound& budget) {
+  std::vector<KnapsackChoice> choices;
+  for (const auto& l : levels) choices.push_back(l.options);
+  const KnapsackResult result = solve_knapsack(choices, budget);
+  EffectPlan plan = plan_of(levels, result.option, facts, asked, budget);
+  plan.least_cost_s = result.least_cost_s;
   return plan;
 }
 
@@ -116,6 +124,20 @@ EffectPlan plan_in_time(const std::vector<Levels>& levels, const PlanFacts& fact
   return plan;
 }
 
+/// The kind of error that takes the largest share of its budget; null if none takes any.
+const ErrorKind* largest_share(const ErrorBound& error, const ErrorBound& budget) {
+  const ErrorKind* worst = nullptr;
+  double most = 0.0;
+  for (const auto& kind : error_kinds) {
+    const double value = error.*kind.value, of = budget.*kind.value;
+    const double share = value == 0.0                     ? 0.0
+                         : of == 0.0 || std::isinf(value) ? unbounded
+                                                          : value / of;
+    if (share > most) most = share, worst = &kind;
+  }
+  return worst;
+}
+
 }  // namespace
 
 EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFacts& facts,
@@ -129,23 +151,32 @@ EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFact
   return plan_within(levels, facts, asked, accuracy.budget);
 }
 
+EffectPlan replayed_plan(std::span<const PlannableEffect> effects, const PlanFacts& facts,
+                         const EffectSet& asked, const EffectSet& recorded) {
+  std::vector<Levels> levels;
+  for (const auto& effect : effects) levels.push_back(levels_of(effect, facts, asked, &recorded));
+  const std::vector<std::size_t> only(levels.size(), 0);
+  EffectPlan plan = plan_of(levels, only, facts, asked, not_bounded);
+  plan.least_cost_s = plan.cost_s;
+  plan.replayed = true;
+  return plan;
+}
+
 std::string why(const PlannedEffect& planned, const EffectPlan& plan) {
+  if (plan.replayed) return "as the replayed plan says";
   if (planned.forced) return "as the scenario says";
   if (!planned.decided) return "always";
   const bool at_reference = planned.level == planned.facts->reference();
   const ErrorBound& error = at_reference ? planned.cheaper : planned.error;
-  const ErrorKind* worst = nullptr;
-  double most = 0.0;
-  for (const auto& kind : error_kinds) {
-    const double budget = plan.budget.*kind.value, value = error.*kind.value;
-    const double share = value == 0.0 ? 0.0 : budget > 0.0 ? value / budget : unbounded;
-    if (share > most || (share == most && share > 0.0 && !worst)) most = share, worst = &kind;
-  }
+  const ErrorKind* worst = largest_share(error, plan.budget);
+  // Where no kind that matters is bounded: the largest in standard budgets.
+  if (!worst) worst = largest_share(error, standard_budget);
   if (!worst) return at_reference ? "nothing to save" : "no error here";
-  const double value = error.*worst->value;
+  const double value = error.*worst->value, budget = plan.budget.*worst->value;
   if (std::isinf(value)) return "must not be left out here";
-  return formatted("%s%.2g %s of %.2g", at_reference ? "the next lower level would cost " : "",
-                   value, worst->unit, plan.budget.*worst->value);
+  return formatted("%s%.2g %s of %s", at_reference ? "the next lower level would cost " : "", value,
+                   worst->unit,
+                   std::isinf(budget) ? "unbounded" : formatted("%.2g", budget).c_str());
 }
 
 }  // namespace dmise

@@ -14,7 +14,6 @@ struct PlannedEffect {
   int level = 0;
   ErrorBound error;      // of this level
   double cost_s = 0.0;   // by the shipped table
-  ErrorBound stated;     // likewise, also of a level that the user forces
   ErrorBound cheaper;    // error of the next lower level; zero at the lowest
   bool forced = false;   // by the user
   bool decided = false;  // among several levels
@@ -31,6 +30,7 @@ struct EffectPlan {
   double cost_s = 0.0;      // likewise
   double least_cost_s = 0;  // no plan within the budget costs less
   bool in_time = true;      // false: no plan is as fast as was asked; this is the fastest
+  bool replayed = false;    // its levels are those of another run
 };
 
 /// Chooses one level for each effect: the cheapest levels whose errors sum up to no more than the
@@ -43,6 +43,12 @@ struct EffectPlan {
 /// time that is negative or no number, and for an effect whose error or cost is none.
 EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFacts& facts,
                         const EffectSet& asked, const Accuracy& accuracy);
+
+/// Returns the plan that takes the levels of `recorded`, with their errors and costs in this
+/// exposure and without a budget. As by `plan_effects`, levels that `asked` forces have no error.
+/// An error is not bounded where a level leaves out what no plan would.
+EffectPlan replayed_plan(std::span<const PlannableEffect> effects, const PlanFacts& facts,
+                         const EffectSet& asked, const EffectSet& recorded);
 
 /// Returns the reason for a level in one short text.
 std::string why(const PlannedEffect& planned, const EffectPlan& plan);

@@ -4,13 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/base/formatted.h"
 #include "core/base/quantile.h"
+#include "core/config/effect_list.h"
+#include "core/effects/frame_effects.h"
+#include "sensors/pipeline/exposure_planner.h"
+#include "sensors/pipeline/objects_in_field.h"
 
 namespace dmise {
 namespace {
+
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 SensorConfig planned_for(SensorConfig sensor, const Accuracy& accuracy) {
   sensor.accuracy = accuracy;
@@ -31,7 +38,7 @@ double seconds_of(FramePipeline& chain, const SceneFrames& scene) {
   return seconds;
 }
 
-/// Share of the objects in the frame near whose middle something was detected.
+/// Share of the objects in the frame near whose middle something was detected; NaN without any.
 double share_detected(const FrameProducts& frame) {
   const double near_px = 3.0 * std::hypot(1.0, frame.header.psf_fwhm_px);
   int objects = 0, found = 0;
@@ -42,7 +49,33 @@ double share_detected(const FrameProducts& frame) {
       return std::hypot(d.x_px - truth.rendered_x_px, d.y_px - truth.rendered_y_px) < near_px;
     });
   }
-  return objects > 0 ? double(found) / objects : 0.0;
+  return objects > 0 ? double(found) / objects : not_measured;
+}
+
+/// The effects of a sensor, with the facts by which they state errors of the exposure.
+struct StatedErrors {
+  std::vector<PlannableEffect> effects;
+  PlanFacts facts;
+
+  ErrorBound of(const EffectFacts& effect, int level) const {
+    const auto found =
+        std::ranges::find(effects, &effect, [](const PlannableEffect& e) { return e.facts; });
+    return found->error(level, facts);
+  }
+};
+
+StatedErrors stated_errors(const SceneFrames& scene, const SensorConfig& sensor) {
+  const Scenario& scenario = scene.scenario();
+  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects);
+  const ExposurePlanner planner(sensor, scene.stars().get(), scenario.faintest_star_mag, &shapes);
+  const View view(sensor, scene.times(), scene.world(), scenario.seed);
+  std::vector<std::size_t> objects;
+  if (sensor.effects.has(SpaceObjects::facts)) objects = objects_in_field(view, &shapes);
+  SceneFacts facts = scene_facts(sensor);
+  facts.stars = scene.stars() != nullptr;
+  facts.shapes = !shapes.empty();
+  facts.shutter_closed = view.shutter_closed();
+  return {plannable_effects(sensor, facts), planner.facts(view, objects)};
 }
 
 }  // namespace
@@ -55,14 +88,15 @@ std::string tradeoff_csv_header() {
 }
 
 std::string csv_line(const TradeoffRow& row) {
-  std::ostringstream text;
-  text.precision(6);
-  text << row.effect << ',' << row.level;
+  std::string text = row.effect + "," + row.level;
+  const auto add = [&](double value) {
+    text += std::isnan(value) ? "," : formatted(",%.6g", value);
+  };
   for (const auto& error : {row.bound, row.measured})
-    for (const auto& kind : error_kinds) text << ',' << error.*kind.value;
-  text << ',' << row.residual_sigma << ',' << row.detected << ',' << row.seconds << ','
-       << row.reference_s;
-  return text.str();
+    for (const auto& kind : error_kinds) add(error.*kind.value);
+  for (const double value : {row.residual_sigma, row.detected, row.seconds, row.reference_s})
+    add(value);
+  return text;
 }
 
 std::optional<TradeoffRow> row_of_csv(const std::string& line) {
@@ -73,6 +107,10 @@ std::optional<TradeoffRow> row_of_csv(const std::string& line) {
   if (!std::getline(text, row.effect, ',') || !std::getline(text, row.level, ','))
     return std::nullopt;
   while (std::getline(text, field, ',')) {
+    if (field.empty()) {
+      numbers.push_back(not_measured);
+      continue;
+    }
     char* end = nullptr;
     numbers.push_back(std::strtod(field.c_str(), &end));
     if (end == field.c_str() || *end != '\0') return std::nullopt;
@@ -95,19 +133,24 @@ Tradeoff::Tradeoff(const SceneFrames& scene, int repeats)
       repeats_(repeats),
       reference_(scene.make(planned_for(scene.sensor(), reference_accuracy()))),
       comparison_(scene, reference_, reference_.plan.effects) {
+  has_sources_ = std::ranges::any_of(comparison_.sources(), &ReferenceSource::counts);
+  has_background_ = comparison_.background_pixels() > 0;
+  const StatedErrors stated =
+      stated_errors(scene, planned_for(scene.sensor(), reference_accuracy()));
   for (const PlannedEffect& effect : reference_.plan.planned) {
     if (!effect.decided) continue;
     for (int level = 0; level < effect.facts->reference(); ++level) {
       SensorConfig alone = planned_for(scene.sensor(), reference_accuracy());
       alone.unplanned = alone.effects;
       alone.effects.force_level(*effect.facts, level);
-      rows_.push_back(
-          {std::string(effect.facts->name), std::string(effect.facts->levels[std::size_t(level)])});
+      rows_.push_back({.effect = std::string(effect.facts->name),
+                       .level = std::string(effect.facts->levels[std::size_t(level)]),
+                       .bound = stated.of(*effect.facts, level)});
       sensors_.push_back(std::move(alone));
     }
   }
   const auto add = [&](const std::string& name, const Accuracy& accuracy) {
-    rows_.push_back({"budget", name});
+    rows_.push_back({.effect = "budget", .level = name});
     sensors_.push_back(planned_for(scene.sensor(), accuracy));
   };
   add("draft", draft_accuracy());
@@ -126,10 +169,15 @@ TradeoffRow Tradeoff::measure(std::size_t index) const {
   {
     const FrameProducts frame = scene_.make(sensor);
     const FrameError error = comparison_.error_of(frame, frame.plan.effects);
-    row.bound = frame.plan.error;
-    for (const PlannedEffect& planned : frame.plan.planned)
-      if (planned.facts->name == row.effect) row.bound = planned.stated;
+    if (row.effect == "budget") row.bound = frame.plan.error;
     row.measured = error.largest;
+    // What is not 0 was found somewhere: in a source too faint for photometry, or in the shape of
+    // the noise.
+    const auto leave_out = [](double& value) {
+      if (value == 0.0) value = not_measured;
+    };
+    if (!has_sources_) leave_out(row.measured.photometry_mag), leave_out(row.measured.position_px);
+    if (!has_background_) leave_out(row.measured.background_sigma), leave_out(row.measured.noise);
     row.residual_sigma = error.residual_sigma;
     row.detected = share_detected(frame);
   }
@@ -148,6 +196,17 @@ TradeoffRow Tradeoff::measure(std::size_t index) const {
   row.seconds = middle_of(seconds);
   row.reference_s = middle_of(reference_s);
   return row;
+}
+
+std::vector<std::string> Tradeoff::notes() const {
+  std::vector<std::string> notes;
+  if (!has_sources_)
+    notes.push_back(
+        "the frame has no isolated source: photometry_mag and position_px are not measured");
+  if (!has_background_)
+    notes.push_back(
+        "the frame has no background pixel: background_sigma and noise are not measured");
+  return notes;
 }
 
 }  // namespace dmise

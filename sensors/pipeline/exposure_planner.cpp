@@ -279,8 +279,8 @@ EffectPlan ExposurePlanner::plan(const View& view, const std::vector<std::size_t
   const auto& effects = view.shutter_closed() ? effects_in_the_dark_ : effects_;
   if (sensor_.recorded_plans.empty())
     return plan_effects(effects, known, sensor_.effects, sensor_.accuracy);
-  return plan_effects(effects, known, recorded_effects(effects, sensor_, view.times().frame),
-                      sensor_.accuracy);
+  return replayed_plan(effects, known, sensor_.effects,
+                       recorded_effects(effects, sensor_, view.times().frame));
 }
 
 }  // namespace dmise

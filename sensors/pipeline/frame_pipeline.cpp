@@ -1,6 +1,7 @@
 #include "sensors/pipeline/frame_pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -225,8 +226,11 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
   frame.header = header_of(believed ? *believed : view, settings, optics->fwhm_px());
   frame.header.excluded = view.excluded();
-  if (planner) {
-    frame.header.accuracy = sensor.accuracy.name;
+  // A replayed plan may leave out what has no bound in this scenario.
+  if (planner && std::ranges::all_of(error_kinds, [&](const ErrorKind& kind) {
+        return std::isfinite(frame.plan.error.*kind.value);
+      })) {
+    frame.header.accuracy = frame.plan.replayed ? "replayed" : sensor.accuracy.name;
     frame.header.error = frame.plan.error;
   }
   const Exposure exposure = exposure_of(sensor, view.times(), settings.seed);

@@ -61,6 +61,21 @@ TEST_F(RecordedPlansOfARun, AreTakenFrameByFrame) {
   EXPECT_EQ(plans.at(1), plans.at(2));
 }
 
+TEST_F(RecordedPlansOfARun, MakeFramesWithTheSameBoundsWhateverTheAccuracy) {
+  const FrameProducts first = stage_.frame();
+  ASSERT_NE(first.header.error, ErrorBound{});
+  EXPECT_EQ(first.header.accuracy, "draft");
+  ASSERT_EQ(refusal_of(run_json()), "");
+  stage_.scenario.sensors = scenario_.sensors;
+  for (const Accuracy& accuracy : {draft_accuracy(), reference_accuracy(), Accuracy{}}) {
+    stage_.scenario.sensors[0].accuracy = accuracy;
+    const FrameProducts replayed = stage_.frame();
+    EXPECT_EQ(replayed.header.error, first.header.error) << accuracy.name;
+    EXPECT_EQ(replayed.header.accuracy, "replayed");
+    EXPECT_EQ(replayed.counts.pixels, first.counts.pixels) << accuracy.name;
+  }
+}
+
 TEST_F(RecordedPlansOfARun, OfAnotherKindAreRefusedByName) {
   EXPECT_NE(refusal_of(""), "");
   EXPECT_NE(refusal_of("[]"), "");

@@ -112,5 +112,38 @@ TEST(Planner, SaysWhichErrorDecided) {
   EXPECT_EQ(why(of(standard, graded), standard), "0.001 mag of 0.01");
 }
 
+// A time that no plan keeps has no bound of errors: what is left out says how much it lacks.
+TEST(Planner, SaysTheErrorWithoutABudget) {
+  const EffectPlan fastest = plan({.name = "seconds", .budget = {}, .seconds_per_frame = 1e-9});
+  EXPECT_EQ(why(of(fastest, graded), fastest), "1 mag of unbounded");
+  EXPECT_EQ(why(of(fastest, plain), fastest), "0.2 px of unbounded");
+  const EffectPlan without = plan({.name = "budget", .budget = not_bounded}, {}, 0.0);
+  EXPECT_EQ(why(of(without, plain), without), "no error here");
+  // Some kinds alone have a budget.
+  const EffectPlan some = plan({.name = "budget",
+                                .budget = {.photometry_mag = 0.2,
+                                           .position_px = unbounded,
+                                           .background_sigma = unbounded,
+                                           .noise = unbounded}});
+  EXPECT_EQ(why(of(some, graded), some), "0.1 mag of 0.2");
+  EXPECT_EQ(why(of(some, plain), some), "0.2 px of unbounded");
+}
+
+TEST(Planner, AReplayedPlanHasTheErrorsOfItsLevels) {
+  EffectSet asked;
+  asked.force_level(on_wish, 1);
+  const EffectPlan draft = plan(draft_accuracy(), asked);
+  PlanFacts facts;
+  facts.refraction_rad = 0.2;
+  const EffectPlan replayed = replayed_plan(effects, facts, asked, draft.effects);
+  EXPECT_EQ(replayed.error, draft.error);
+  EXPECT_EQ(replayed.effects, draft.effects);
+  EXPECT_DOUBLE_EQ(replayed.cost_s, draft.cost_s);
+  EXPECT_EQ(why(of(replayed, graded), replayed), "as the replayed plan says");
+  std::vector<PlannableEffect> vital = effects;
+  vital[1].error = [](int, const PlanFacts&) { return not_bounded; };
+  EXPECT_EQ(replayed_plan(vital, facts, asked, draft.effects).error.noise, unbounded);
+}
+
 }  // namespace
 }  // namespace dmise

@@ -62,6 +62,15 @@ def test(binary, directory):
     dmise("run", scenario("other", "reference"), "--out", replayed, "--plan", first / "run.json")
     check(pixels(replayed) == pixels(first), "a replayed plan makes the same pixels whatever the accuracy")
 
+    def bounds(run):
+        plans = [frame["plan"]["error"] for frame in json.loads((run / "run.json").read_text())["frames"]]
+        cards = {name: [data[at:at + 80] for at in range(0, 28800, 80) if data[at:at + 8].rstrip() in (
+            b"ERRPHOT", b"ERRPOS", b"ERRBACK", b"ERRNOISE")] for name, data in files(run).items() if name.endswith(".fits")}
+        return plans, cards
+
+    check(bounds(replayed) == bounds(first) and any(any(plan.values()) for plan in bounds(first)[0]),
+          "and states the same bounds of errors")
+
     many = directory / "replayed-many"
     dmise("launch", directory / "other.yaml", "--out", many, "--plan", first / "run.json", "--hosts", "1")
     check(files(many) == files(replayed), "and a process per node replays it to the same bytes")
