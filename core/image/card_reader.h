@@ -63,7 +63,7 @@ class CardReader {
     if (found != value) fail(key, "must be " + number_text(value) + ", got " + find(key));
   }
   /// Without MAGSYS it is V-solar.
-  void zero_point(double& zero_point_mag, MagnitudeScale& scale) {
+  void zero_point(double& zero_point_mag, MagnitudeScale& scale, const char*) {
     number("PHOTZP", zero_point_mag, "");
     scale = {};
     if (!values_.contains("MAGSYS")) return;

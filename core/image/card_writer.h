@@ -65,8 +65,8 @@ class CardWriter {
     number(key, value, comment);
   }
   /// PHOTZP in the system that MAGSYS names.
-  void zero_point(double zero_point_mag, const MagnitudeScale& scale) {
-    number("PHOTZP", zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
+  void zero_point(double zero_point_mag, const MagnitudeScale& scale, const char* comment) {
+    number("PHOTZP", zero_point_mag, comment);
     constexpr std::array<const char*, 3> meanings{"V of a source of the Sun's colour",
                                                   "Vega has 0.03 in every band",
                                                   "3631 Jy at every wavelength"};

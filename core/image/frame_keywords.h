@@ -123,17 +123,30 @@ void visit_exclusion(Visitor& v, FrameHeader& h) {
 template <class Visitor>
 void visit(Visitor& v, FrameHeader& h) {
   v.text("INSTRUME", h.sensor, "sensor");
+  if (v.present("UNKNOWN", h.unknown.any())) v.facts("UNKNOWN", h.unknown, "facts");
   visit_observation(v, h.observation);
   v.integer("FRAMENUM", h.frame, "frame of this sensor, counts from 1");
   v.constant("TIMESYS", "UTC", "");
-  v.utc("DATE-OBS", h.start_utc, "start of the exposure");
-  v.utc("DATE-BEG", h.start_utc, "start of the exposure");
-  v.utc("DATE-AVG", h.middle_utc, "middle of the exposure");
-  v.utc("DATE-END", h.end_utc, "end of the exposure");
+  // Unknown facts have no cards that others would read as facts; what stands in is read back.
+  const bool timed = !h.unknown.has(FrameFact::time);
+  const bool exposed = !h.unknown.has(FrameFact::exposure);
+  if (timed) {
+    v.utc("DATE-OBS", h.start_utc, "start of the exposure");
+    v.utc("DATE-BEG", h.start_utc, "start of the exposure");
+  }
+  if (timed && exposed) {
+    v.utc("DATE-AVG", h.middle_utc, "middle of the exposure");
+    v.utc("DATE-END", h.end_utc, "end of the exposure");
+  } else {
+    h.middle_utc = h.end_utc = h.start_utc;
+  }
   v.integer("SIMT-BEG", h.start.ns, "[ns] start, since the scenario's start");
   v.integer("SIMT-AVG", h.middle.ns, "[ns] middle");
   v.integer("SIMT-END", h.end.ns, "[ns] end");
-  v.number("EXPTIME", h.exposure_s, "[s]");
+  if (exposed)
+    v.number("EXPTIME", h.exposure_s, "[s]");
+  else
+    h.exposure_s = h.end.seconds() - h.start.seconds();
   v.text("MOUNT", h.mount, "how the camera is carried");
   v.text("FILTER", h.band.name, "band");
   v.number("BANDCEN", h.band.centre_m, "[m] centre of the band");
@@ -154,8 +167,12 @@ void visit(Visitor& v, FrameHeader& h) {
   v.optional_number("DEFOCUS", h.defocus_um, "[um] of the detector from the focus, mid exposure");
   if (v.present("VIGNROWS", !h.illumination.empty()))
     v.illumination(h.illumination, h.illumination_radius);
-  v.zero_point(h.zero_point_mag, h.magnitudes);
-  v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
+  const bool air_known = !h.unknown.has(FrameFact::extinction);
+  if (!h.unknown.has(FrameFact::zero_point))
+    v.zero_point(h.zero_point_mag, h.magnitudes,
+                 air_known ? "[mag] of 1 e-/s, without atmosphere"
+                           : "[mag] of 1 e-/s, dimmed by the air of the frame");
+  if (air_known) v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
   if (v.present("R0", h.r0_m > 0)) {
     v.number("R0", h.r0_m, "[m] Fried parameter, zenith, 500 nm");
     v.number("ISOPLAN", h.isoplanatic_angle_rad, "[rad] isoplanatic angle, likewise");
@@ -175,7 +192,6 @@ void visit(Visitor& v, FrameHeader& h) {
   if (v.present("MIRRORED", h.mirrored))
     v.flag("MIRRORED", h.mirrored, "rows run against the camera's y axis");
   visit_exclusion(v, h);
-  if (v.present("UNKNOWN", h.unknown.any())) v.facts("UNKNOWN", h.unknown, "stand-ins");
   visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
   visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");
   visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, that aberrates the WCS, GCRS");

@@ -212,6 +212,10 @@ TEST(FitsFile, ReadsBackWhatIsUnknownAndAMirrorImage) {
   const std::string bytes = encoded(sample_counts(), header);
   EXPECT_EQ(decode_frame(bytes, "frame.fits").header, as_in_file(header));
   EXPECT_TRUE(decode_frame(bytes, "frame.fits").header.unknown.has(FrameFact::gain));
+  for (const char* key : {"EXPTIME", "DATE-OBS", "DATE-AVG", "DATE-END", "PHOTZP", "EXTINCT"})
+    EXPECT_EQ(bytes.find(std::string(key) + std::string(8 - std::string(key).size(), ' ') + "="),
+              std::string::npos)
+        << key;
   EXPECT_EQ(error_of(with_card(bytes, "UNKNOWN", "UNKNOWN = 'time colour'")),
             "frame.fits: UNKNOWN: holds a word that names no fact, got time colour");
 }
