@@ -61,9 +61,9 @@ double LineFields::number(std::size_t field) const {
       fail("number too large", fields_[field]);
     return 0.0;  // below the smallest double
   }
-  if (error != std::errc{} || end != text.data() + text.size())
+  if (error != std::errc{} || end != text.data() + text.size() || std::isnan(value))
     fail("must be a number", fields_[field]);
-  if (!std::isfinite(value) || std::abs(value) > 1e12) fail("number too large", fields_[field]);
+  if (std::abs(value) > 1e12) fail("number too large", fields_[field]);
   return value;
 }
 

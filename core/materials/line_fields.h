@@ -10,7 +10,9 @@ namespace dmise {
 /// continued by a backslash. Errors read `file:line: keyword: reason, got value`.
 class LineFields {
  public:
-  LineFields(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+  LineFields(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
+    if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);  // byte order mark
+  }
 
   /// Moves to the next line that has a field; false at the end.
   bool next();

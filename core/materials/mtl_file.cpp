@@ -124,11 +124,13 @@ std::shared_ptr<Texture> texture_of(const LineFields& fields, double& height_m) 
   return std::make_shared<Texture>(std::move(t));
 }
 
-constexpr std::array<std::string_view, 19> without_effect{
-    "Ka",  "Ke",   "Tf",   "Ni",    "illum", "sharpness", "Pr",     "Pm", "Ps",     "Pc",
-    "Pcr", "norm", "disp", "decal", "refl",  "aniso",     "anisor", "Km", "map_aat"};
+constexpr std::array<std::string_view, 13> without_effect{
+    "Ka", "Tf", "Ni", "illum", "sharpness", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor", "Km"};
 
-bool starts_with_map(std::string_view keyword) { return keyword.substr(0, 4) == "map_"; }
+bool is_other_map(std::string_view key) {
+  return key.starts_with("map_") || key == "disp" || key == "refl" || key == "norm" ||
+         key == "decal";
+}
 
 }  // namespace
 
@@ -173,7 +175,10 @@ std::map<std::string, Material> parse_mtl(std::string_view text, const std::stri
       entry->colour_map = texture_of(fields, none);
     } else if (is_height_map(key)) {
       entry->slope_map = texture_of(fields, entry->height_m);
-    } else if (starts_with_map(key)) {
+    } else if (key == "Ke") {
+      if (fields.size() > 1 && fields.rest().find_first_not_of("0. +-") != std::string::npos)
+        notes.push_back(fields.where() + ": Ke: surfaces emit by their temperature alone");
+    } else if (is_other_map(key)) {
       notes.push_back(fields.where() + ": " + std::string(key.substr(0, 20)) +
                       ": this map is left out");
     } else if (std::find(without_effect.begin(), without_effect.end(), key) ==

@@ -12,7 +12,7 @@ bool has_panel(const Mesh& mesh) {
 
 bool faces_normal(const Mesh& mesh, const SunTrackingPanel& panel) {
   constexpr double least_cosine = 0.70710678118654752;
-  const Vec<Body> normal = body_from_panel(panel, panel.normal) * Vec<Panel>{0, 0, 1};
+  const Vec<Body> normal = unit(panel.normal);
   return std::ranges::any_of(mesh.triangles, [&](const Mesh::Triangle& t) {
     const Vec<Body> twice = double_area_m2(mesh, t);
     return t.panel && dot(twice, normal) > least_cosine * norm(twice);

@@ -14,7 +14,7 @@ struct HingedPanel {
 
 bool has_panel(const Mesh& mesh);
 
-/// Whether a facet of the panel at rest faces its normal to 45 deg.
+/// Whether a facet of the panel at rest faces its normal, as stated, to 45 deg.
 bool faces_normal(const Mesh& mesh, const SunTrackingPanel& panel);
 
 /// Marks the vertices of the panel. `mesh` has none that its other facets share.

@@ -61,7 +61,7 @@ TEST(Mtl, TakesANamedMaterialAndItsWarmth) {
 TEST(Mtl, WhatCannotBeUsedPointsAtItsLine) {
   EXPECT_EQ(complaint("\n# x\nKd 1 1 1\n"), "a.mtl:3: Kd: precedes any newmtl");
   EXPECT_EQ(complaint("newmtl a\nKd 1 x 1\n"), "a.mtl:2: Kd: must be a number, got x");
-  EXPECT_EQ(complaint("newmtl a\nKd nan 0 0\n"), "a.mtl:2: Kd: number too large, got nan");
+  EXPECT_EQ(complaint("newmtl a\nKd nan 0 0\n"), "a.mtl:2: Kd: must be a number, got nan");
   EXPECT_EQ(complaint("newmtl a\nbrdf kaptn\n"),
             "a.mtl:2: brdf: no such material in the library, got kaptn");
   EXPECT_EQ(complaint("newmtl a\nshine 3\n"), "a.mtl:2: shine: unknown keyword");
@@ -106,6 +106,18 @@ TEST(Mtl, OtherMapsAndThoseOfALibraryMaterialAreLeftOutWithANote) {
                        "a.mtl:2: map_Ks: this map is left out",
                        "a.mtl:5: map_Kd: left out: the material has a brdf of the library"}));
   EXPECT_EQ(all.at("b").colour_map, nullptr);
+  parse("\xef\xbb\xbfnewmtl a\ndisp a.png\nrefl a.png\nnorm a.png\ndecal a.png\nmap_Ke a.png\n");
+  EXPECT_EQ(notes,
+            (std::vector<std::string>{
+                "a.mtl:2: disp: this map is left out", "a.mtl:3: refl: this map is left out",
+                "a.mtl:4: norm: this map is left out", "a.mtl:5: decal: this map is left out",
+                "a.mtl:6: map_Ke: this map is left out"}));
+}
+
+TEST(Mtl, SurfacesThatEmitAColourAreNoted) {
+  parse("newmtl a\nKe 0.000 0.0 0\nnewmtl b\nKe 0 2.5 0\n");
+  EXPECT_EQ(notes,
+            (std::vector<std::string>{"a.mtl:4: Ke: surfaces emit by their temperature alone"}));
 }
 
 }  // namespace

@@ -74,6 +74,10 @@ TEST(Obj, ACubeOfQuadsIsTwelveFacetsThatFaceOutwards) {
   EXPECT_TRUE(model.notes.empty());
 }
 
+TEST(Obj, AByteOrderMarkIsNoPartOfTheText) {
+  EXPECT_EQ(parse("\xef\xbb\xbf" + corners + faces).mesh, parse(corners + faces).mesh);
+}
+
 TEST(Obj, NegativeNumbersCountBackFromTheLine) {
   const auto a = parse(corners + "usemtl kapton\nf 1 4 3\nf 1 2 4\nf 1 3 2\nf 2 3 4\n");
   const auto b = parse(corners + "usemtl kapton\nf -8 -5 -6\nf -8 -7 -5\nf -8 -6 -7\nf -7 -6 -5\n");
@@ -153,6 +157,7 @@ TEST(Obj, WhatCannotBeUsedPointsAtItsLine) {
   EXPECT_EQ(complaint("v 0 0\n"), "a.obj:1: v: needs 3 numbers");
   EXPECT_EQ(complaint("v 0 0 1e400\n"), "a.obj:1: v: number too large, got 1e400");
   EXPECT_EQ(complaint("v 0 0 inf\n"), "a.obj:1: v: number too large, got inf");
+  EXPECT_EQ(complaint("v nan 0 0\n"), "a.obj:1: v: must be a number, got nan");
   EXPECT_EQ(complaint("v 0 0 1,5\n"), "a.obj:1: v: must be a number, got 1,5");
   EXPECT_EQ(complaint(corners + "f 1 2\n"), "a.obj:9: f: a face needs at least three corners");
   EXPECT_EQ(complaint(corners + "f 1 2 9\n"), "a.obj:9: f: no such vertex (8 so far), got 9");

@@ -131,10 +131,18 @@ TEST(Panel, OfAnObjHasCornersAndSidesOfItsOwn) {
             parse(corners + open_box + "f 5 6 7 8\n").mesh);
 }
 
+// A normal that is not square to the hinge: the stated one counts, not its part across the hinge.
+TEST(Panel, MayBeCantedAgainstItsHinge) {
+  const Mesh canted = parse("v -1 -1 -2\nv 1 -1 -2\nv 1 1 2\nv -1 1 2\no panel\nf 1 2 3 4\n").mesh;
+  EXPECT_TRUE(faces_normal(canted, {.normal = {0, -2, 1}}));
+  EXPECT_FALSE(faces_normal(canted, {.normal = {0, 0, 1}}));
+}
+
 TEST(Panel, HasAFacetThatFacesItsNormal) {
   const Mesh wings = box_wing({}, {}, {}, {}), array = starlink_like({}, {}, {});
   EXPECT_TRUE(faces_normal(wings, {}));
-  EXPECT_TRUE(faces_normal(wings, {.normal = {0, 1, -1}}));  // its part across the hinge
+  EXPECT_TRUE(faces_normal(wings, {.normal = {0, 0.9, -1}}));
+  EXPECT_FALSE(faces_normal(wings, {.normal = {0, 1.1, 1}}));  // 47.7 deg, though 0 about the hinge
   EXPECT_FALSE(faces_normal(wings, {.hinge = {0, 0, 1}, .normal = {0, 1, 0}}));
   EXPECT_TRUE(faces_normal(array, starlink_like_panel().axes));
   EXPECT_FALSE(faces_normal(array, {}));
