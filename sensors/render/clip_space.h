@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 
 #include "sensors/render/tile_mesh.h"
 
@@ -19,12 +20,22 @@ class ClipSpace {
       far_ = std::max(far_, z);
     }
     far_ += 0.01 * size;
-    near_ = std::max(near_ - 0.01 * size, 1e-3 * size);
+    const TileCamera& camera = scene.camera;
+    const double columns = camera.columns, rows = camera.rows;
+    // Nothing in the tile is nearer than the bounding box at its farthest corner.
+    const auto farthest = [&](double first_px, double pixels, double principal_px) {
+      return std::max(std::abs(first_px - principal_px),
+                      std::abs(first_px + pixels - principal_px));
+    };
+    const double box_m =
+        distance_from_box_m(*scene.mesh, scene.camera_from_body, scene.object_m) /
+        std::hypot(1.0,
+                   farthest(camera.left - 0.5, columns, camera.principal_x_px) / camera.focal_px,
+                   farthest(camera.top - 0.5, rows, camera.principal_y_px) / camera.focal_px);
+    near_ = std::max(near_ - 0.01 * size, std::min(1e-3 * size, 0.99 * box_m));
     far_ = std::max(far_, 2.0 * near_ * 1e-6 + near_);
     scale_ = 1.0 / std::max(glm::length(object_m_), size);
 
-    const TileCamera& camera = scene.camera;
-    const double columns = camera.columns, rows = camera.rows;
     clip_from_camera_ =
         glm::dmat3({2.0 * camera.focal_px / columns, 0, 0}, {0, 2.0 * camera.focal_px / rows, 0},
                    {2.0 * (camera.principal_x_px - camera.left + 0.5) / columns - 1.0,

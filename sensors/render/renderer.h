@@ -64,6 +64,10 @@ class Renderer {
 TileCamera tile_around(const Mesh& mesh, const Rotation<CameraFrame, Body>& camera_from_body,
                        const Vec<CameraFrame>& object_m, const TileCamera& frame);
 
+/// Distance of the camera from the bounding box of the mesh; 0 inside.
+double distance_from_box_m(const Mesh& mesh, const Rotation<CameraFrame, Body>& camera_from_body,
+                           const Vec<CameraFrame>& object_m);
+
 /// Throws `Error` naming it if the camera is inside the bounding box of the mesh.
 void check_outside(const Mesh& mesh, const Rotation<CameraFrame, Body>& camera_from_body,
                    const Vec<CameraFrame>& object_m);

@@ -44,16 +44,24 @@ TileCamera tile_around(const Mesh& mesh, const Rotation<CameraFrame, Body>& came
   return tile;
 }
 
-void check_outside(const Mesh& mesh, const Rotation<CameraFrame, Body>& camera_from_body,
-                   const Vec<CameraFrame>& object_m) {
+double distance_from_box_m(const Mesh& mesh, const Rotation<CameraFrame, Body>& camera_from_body,
+                           const Vec<CameraFrame>& object_m) {
   const Vec<Body> camera = camera_from_body.inverse() * -object_m;
   Vec<Body> least = mesh.vertex_m.at(0), most = least;
   for (const auto& v : mesh.vertex_m) {
     least = {std::min(least.x, v.x), std::min(least.y, v.y), std::min(least.z, v.z)};
     most = {std::max(most.x, v.x), std::max(most.y, v.y), std::max(most.z, v.z)};
   }
-  if (camera.x >= least.x && camera.x <= most.x && camera.y >= least.y && camera.y <= most.y &&
-      camera.z >= least.z && camera.z <= most.z)
+  const auto beyond = [](double at, double low, double high) {
+    return std::max({0.0, low - at, at - high});
+  };
+  return norm(Vec<Body>{beyond(camera.x, least.x, most.x), beyond(camera.y, least.y, most.y),
+                        beyond(camera.z, least.z, most.z)});
+}
+
+void check_outside(const Mesh& mesh, const Rotation<CameraFrame, Body>& camera_from_body,
+                   const Vec<CameraFrame>& object_m) {
+  if (!(distance_from_box_m(mesh, camera_from_body, object_m) > 0.0))
     throw Error("camera is inside the object's bounding box");
 }
 

@@ -30,13 +30,14 @@ TileMesh::Bounds bounds_of(const std::array<TileVertex, 3>& v, const TileCamera&
 class Builder {
  public:
   Builder(const TileScene& scene, const LightSource& source, std::size_t first_band, bool emission,
-          bool visible)
+          const LitPieces& lit)
       : scene_(scene),
         source_(source),
         first_(first_band),
         bands_(int(std::min<std::size_t>(3, scene.bands.size() - first_band))),
         emission_(emission),
-        specks_(visible),
+        specks_(lit.only_visible),
+        emission_specks_(emission && lit.convex),
         camera_from_body_(glm_of(scene.camera_from_body)),
         clip_(scene) {
     for (int k = 0; k < bands_; ++k) {
@@ -169,17 +170,27 @@ class Builder {
   void add_whole(std::size_t f, bool lit) {
     const SampleCount::Triangle p{corner(f, 0), corner(f, 1), corner(f, 2)};
     TileVertex look = surface(f, lit);
-    if (lit) {
+    if (lit || (emission_specks_ && emits(look))) {
       SampleCount samples(scene_.camera, scene_.oversampling);
       samples.add(p);
       if (specks_ && samples.sparse()) {
+        if (!emission_specks_) put_out(look);
         add_specks(look, p);
         look = surface(f, false);
+        if (emission_specks_) put_out(look);
       } else if (samples.narrow()) {
         scale(look, samples.correction());
       }
     }
     add(look, f, p, {{{0, 0}, {1, 0}, {0, 1}}});
+  }
+
+  bool emits(const TileVertex& look) const {
+    return look.emitted[0] > 0.0f || look.emitted[1] > 0.0f || look.emitted[2] > 0.0f;
+  }
+
+  static void put_out(TileVertex& look) {
+    for (int k = 0; k < 3; ++k) look.emitted[k] = 0.0f;
   }
 
   void add_parts(std::size_t f, std::span<const FacetPiece> pieces) {
@@ -196,8 +207,10 @@ class Builder {
         const SampleCount::Triangle part{at(0), at(i), at(i + 1)};
         SampleCount alone(scene_.camera, scene_.oversampling);
         alone.add(part);
-        if (specks_ && alone.sparse()) {  // on the dark underlay
-          add_specks(surface(f, true), part);
+        if (specks_ && alone.sparse()) {  // on the dark underlay, which has the emission
+          TileVertex look = surface(f, true);
+          put_out(look);
+          add_specks(look, part);
           continue;
         }
         parts.push_back(part);
@@ -213,14 +226,19 @@ class Builder {
 
   /// Light of a triangle in pieces of a pixel.
   void add_specks(const TileVertex& look, const SampleCount::Triangle& whole) {
-    constexpr std::size_t most = 4096;
+    constexpr std::size_t most = 1 << 16;
     std::vector<SampleCount::Triangle> pieces{whole};
     for (std::size_t done = 0; done < pieces.size();) {
       const SampleCount::Triangle p = pieces[done];
       SampleCount samples(scene_.camera, scene_.oversampling);
       samples.add(p);
+      if (samples.beside()) {
+        pieces[done] = pieces.back();
+        pieces.pop_back();
+        continue;
+      }
       if (samples.longest() <= scene_.oversampling || pieces.size() >= most) {
-        add_speck(look, p, samples.area());
+        add_speck(look, p, samples.whole_area());
         ++done;
         continue;
       }
@@ -234,8 +252,7 @@ class Builder {
     }
   }
 
-  /// Light of a triangle as shaded at its centre, times its area, without its own emission, which
-  /// is drawn by samples.
+  /// Light of a triangle as shaded at its centre, times its area; none if that is beside the tile.
   void add_speck(const TileVertex& look, const SampleCount::Triangle& p, double area_samples) {
     const glm::dvec3 middle = (p[0] + p[1] + p[2]) / 3.0;
     const glm::dvec3 n(look.normal);
@@ -258,8 +275,13 @@ class Builder {
     const TileCamera& camera = scene_.camera;
     speck.place_px = {camera.principal_x_px - camera.left + camera.focal_px * middle.x / middle.z,
                       camera.principal_y_px - camera.top + camera.focal_px * middle.y / middle.z};
+    if (!(speck.place_px.x >= -0.5f && speck.place_px.y >= -0.5f &&
+          speck.place_px.x < float(camera.columns) - 0.5f &&
+          speck.place_px.y < float(camera.rows) - 0.5f))
+      return;
     for (int k = 0; k < bands_; ++k)
-      speck.light[k] = float((look.diffuse[k] * falloff + look.specular[k] * lobe) * pixels);
+      speck.light[k] =
+          float((look.diffuse[k] * falloff + look.specular[k] * lobe + look.emitted[k]) * pixels);
     out_.specks.push_back(speck);
   }
 
@@ -268,7 +290,8 @@ class Builder {
   std::size_t first_;
   int bands_;
   bool emission_;
-  bool specks_;
+  bool specks_;           // of light of the source
+  bool emission_specks_;  // of thermal emission
   bool textured_ = false;
   glm::dmat3 camera_from_body_;
   ClipSpace clip_;
@@ -286,6 +309,7 @@ LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex,
   lit.state.assign(count, LitPieces::dark);
   lit.begin.assign(count + 1, 0);
   lit.only_visible = convex || viewer;
+  lit.convex = convex;
   const FacetShadow shadow(mesh, to_source);
   std::vector<FacetPiece> pieces;
   for (std::size_t f = 0; f < count; ++f) {
@@ -313,7 +337,7 @@ LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex,
 
 TileMesh tile_mesh(const TileScene& scene, const LightSource& source, const LitPieces& lit,
                    std::size_t first_band, bool with_emission) {
-  return Builder(scene, source, first_band, with_emission, lit.only_visible).build(lit);
+  return Builder(scene, source, first_band, with_emission, lit).build(lit);
 }
 
 }  // namespace dmise

@@ -40,7 +40,7 @@ struct TileMesh {
   std::vector<std::uint32_t> material;  // one per triangle, as `texture`
   std::size_t underlays = 0;            // the first triangles
 
-  /// Lit parts of facets with too few samples: drawn dark, their light is added to the pixel of
+  /// Shining parts of facets with too few samples: drawn dark, their light is added to the pixel of
   /// their centre.
   struct Speck {
     glm::vec2 place_px;  // of the tile
@@ -56,6 +56,7 @@ struct LitPieces {
   enum State : char { dark, lit, partly };
   std::vector<State> state;   // one per facet
   bool only_visible = false;  // without parts hidden from the camera
+  bool convex = false;        // nothing hides a facet that faces the camera
 };
 /// `viewer`, if not null: parts invisible from that direction are removed, so that the light of
 /// nearly hidden facets does not depend on single samples.

@@ -34,6 +34,26 @@ TEST(HardGeometry, APlatformThatFillsTheFrameCoversEveryPixel) {
     EXPECT_NEAR(r / (sun_photons * 0.8 / pi), 1.0, 1e-5);  // Lambert: the same everywhere
 }
 
+// Of a plate of 100 km the camera sees what is near, before it and beside it.
+TEST(HardGeometry, ALargePlatformIsSeenFromNearby) {
+  const Mesh mesh = plate(1e5, 1e5, named("white-paint"), named("white-paint"));
+  const FacetLight object(mesh, Band{});
+  const TileCamera camera{
+      .focal_px = 32, .principal_x_px = 31.5, .principal_y_px = 31.5, .columns = 64, .rows = 64};
+  for (const double range_m : {1e3, 50.0, 0.1})
+    for (const double tilt : {0.0, 0.3}) {
+      const auto camera_from_body = looking_along({std::sin(tilt), 0, -std::cos(tilt)}, 0.4);
+      const Tile tile = renderer().draw({.mesh = &mesh,
+                                         .bands = {{&object.facets(), sun_photons}},
+                                         .camera_from_body = camera_from_body,
+                                         .object_m = camera_from_body * (towards * -range_m),
+                                         .sources = {{towards, 1.0}},
+                                         .camera = camera});
+      for (const float c : tile.coverage) ASSERT_EQ(c, 1.0f) << range_m << " m, " << tilt;
+      for (const float r : tile.radiance) ASSERT_NEAR(r / (sun_photons * 0.8 / pi), 1.0, 1e-5);
+    }
+}
+
 TEST(HardGeometry, ACameraInTheBoundingBoxIsAClearError) {
   const FacetLight object(box_wing({}, named("kapton"), named("kapton"), named("kapton")), Band{});
   try {

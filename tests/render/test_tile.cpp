@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
@@ -54,6 +55,68 @@ TEST(Tile, ASliverBetweenTwoRowsOfSamplesHasItsLight) {
       ASSERT_GT(expected, 0.0);
       EXPECT_NEAR(got / expected, 1.0, 5e-3) << grazing << " rad, " << shift;
     }
+}
+
+/// Thin objects of 3 m, and a disc from its edge, 3 m across.
+std::vector<NamedMesh> thin_shapes() {
+  const Material white = named("white-paint");
+  return {{"boom", box({0.002, 0.002, 3}, white)},
+          {"sheet", box({3, 3, 0.001}, white)},
+          {"mast", cylinder(0.001, 3, 12, white)},
+          {"disc", cylinder(1.5, 0.001, 64, white)}};
+}
+
+// Objects thinner than the samples from all sides, and with half of them beside the tile.
+TEST(Tile, AnObjectThinnerThanTheSamplesHasItsLight) {
+  const auto directions = even_directions<Body>(40);
+  for (const auto& [shape, mesh] : thin_shapes()) {
+    const FacetLight object(mesh, Band{});
+    for (const int pixels : {12, 97, 1300})
+      for (std::size_t i = 0; i < (pixels > 1000 ? 3 : 40); ++i) {
+        const Vec<Body> viewer = i ? directions[i] : Vec<Body>{1, 0, 0};
+        const Vec<Body> sun = unit(viewer + directions[(i * 7 + 3) % 40] * 0.8);
+        const double expected =
+            sun_photons * object.reflected_m2_per_sr(sun, viewer) / (far_m * far_m);
+        const TileCamera camera = camera_around(2.2, far_m, pixels);
+        const double roll = 0.7 * double(i);
+        const int oversampling = std::clamp(512 / pixels, 4, 64);
+        EXPECT_NEAR(flux(draw(object, sun, viewer, camera, roll, oversampling), camera) / expected,
+                    1.0, 5e-3)
+            << shape << ", " << pixels << " px, geometry " << i;
+        if (pixels < 50) continue;
+        double parts = 0;
+        for (const int right : {0, 1}) {
+          TileCamera part = camera;
+          part.left = right * (pixels / 2);
+          part.columns = right ? pixels - pixels / 2 : pixels / 2;
+          parts += flux(draw(object, sun, viewer, part, roll, oversampling), part);
+        }
+        EXPECT_NEAR(parts / expected, 1.0, 5e-3)
+            << shape << " in two, " << pixels << " px, geometry " << i;
+      }
+  }
+}
+
+TEST(Tile, AWarmObjectThinnerThanTheSamplesHasItsLightInTheThermalBand) {
+  const Band thermal{.name = "N", .centre_m = 10e-6, .width_m = 4e-6};
+  const auto directions = even_directions<Body>(20);
+  for (const auto& [shape, mesh] : thin_shapes()) {
+    const FacetLight object(mesh, thermal);
+    const TileCamera camera = camera_around(2.2, far_m, 97);
+    for (std::size_t i = 0; i < 20; ++i) {
+      const Vec<Body>&viewer = directions[i], sun = directions[(i * 7 + 3) % 20];
+      const Tile tile = renderer().draw({.mesh = &object.mesh(),
+                                         .bands = {{&object.facets(), 0.0}},
+                                         .camera_from_body = looking_along(-viewer, 0.3),
+                                         .object_m = {0, 0, far_m},
+                                         .sources = {{sun, 1.0}},
+                                         .camera = camera,
+                                         .oversampling = 5});
+      EXPECT_NEAR(flux(tile, camera) * far_m * far_m / object.emitted_photons_per_s_sr(viewer), 1.0,
+                  5e-3)
+          << shape << ", geometry " << i;
+    }
+  }
 }
 
 // What the shadow takes from the picture is what it takes from the sum.
