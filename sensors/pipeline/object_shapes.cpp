@@ -122,23 +122,33 @@ double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {
   return light > 0.0 ? std::min(darkest_mag, sun_v_mag + magnitude_of_light(light)) : darkest_mag;
 }
 
-double turn_rad(const View& view, std::size_t object) {
+double turn_rad(const View& view, std::size_t object, double begin, double end) {
   const auto& exposure = view.times();
-  const double step = std::min(1.0, 0.01 / exposure.seconds());  // of the exposure: 10 ms at most
-  const SimTime before = exposure.at(1.0 - step);
-  const auto a = view.world().gcrs_from_body(object, before);
-  const auto b = view.world().gcrs_from_body(object, exposure.end);
-  if (!a || !b) return 0.0;
-  double turn = rotation_angle_rad(*a * b->inverse());
-  if (const auto& panel = view.world().roster().objects[object].panel) {
-    const auto gcrs_from_panel = [&](const Rotation<Gcrs, Body>& gcrs_from_body, SimTime t) {
-      const Vec<Gcrs> to_sun = view.environment().sun_m - view.world().motion(object, t).position_m;
-      return gcrs_from_body * body_from_panel(*panel, gcrs_from_body.inverse() * to_sun);
-    };
-    turn = std::max(turn, rotation_angle_rad(gcrs_from_panel(*a, before) *
-                                             gcrs_from_panel(*b, exposure.end).inverse()));
+  const World& world = view.world();
+  const double turn = world.turn_rad(object, exposure.at(begin), exposure.at(end));
+  const auto& panel = world.roster().objects[object].panel;
+  if (!panel || !(turn > 0.0)) return turn;
+  const auto gcrs_from_panel = [&](double part) -> std::optional<Rotation<Gcrs, Panel>> {
+    const SimTime t = exposure.at(part);
+    const auto gcrs_from_body = world.gcrs_from_body(object, t);
+    if (!gcrs_from_body) return std::nullopt;
+    const Vec<Gcrs> to_sun = view.environment().sun_m - world.motion(object, t).position_m;
+    return *gcrs_from_body * body_from_panel(*panel, gcrs_from_body->inverse() * to_sun);
+  };
+  // Steps in which the body turns little; of a fast one the first, in proportion.
+  constexpr double step_rad = 0.1, most_steps = 1024;
+  const double wanted = std::max(1.0, std::ceil(turn / step_rad));
+  const double step = (end - begin) / wanted;
+  const int steps = int(std::min(wanted, most_steps));
+  double of_panel = 0.0;
+  auto before = gcrs_from_panel(begin);
+  for (int i = 1; i <= steps; ++i) {
+    const auto after = gcrs_from_panel(i == int(wanted) ? end : begin + i * step);
+    if (!before || !after) return turn;
+    of_panel += rotation_angle_rad(*before * after->inverse());
+    before = after;
   }
-  return turn / step;
+  return std::max(turn, of_panel * wanted / steps);
 }
 
 }  // namespace dmise

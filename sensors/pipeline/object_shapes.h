@@ -85,8 +85,8 @@ double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape&
 /// V magnitude of the sunlight alone when fully sunlit, `darkest_mag` at most.
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose);
 
-/// Angle that the object turns by over the exposure [rad], or its panel if that is more, by the
-/// rate at the end; 0 without an attitude.
-double turn_rad(const View& view, std::size_t object);
+/// Angle that the object turns by over a part of the exposure [rad], or its panel if that is more,
+/// by their rates: whole turns count; 0 without an attitude.
+double turn_rad(const View& view, std::size_t object, double begin = 0.0, double end = 1.0);
 
 }  // namespace dmise

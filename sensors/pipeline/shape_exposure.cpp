@@ -9,25 +9,44 @@ namespace {
 /// Light of one arc.
 struct ArcLight {
   double signal_e = 0.0, tilt = 0.0;
+  SimTime brightest;    // of the instants of the sum
+  double most = 0.0;    // photons/s/m2 then
+  double sunlit = 0.0;  // for those
 };
 
 /// The mean brightness of a shape over arc `k` of `count`, in steps in which it turns by no more
-/// than `still_enough_rad`, so that a glint shorter than an arc is not missed.
+/// than `still_enough_rad`, so that a glint shorter than an arc is not missed. Where those are too
+/// many each instant is elsewhere in its step, by the golden ratio: whatever the rotation's period,
+/// the instants of all arcs together look at all its phases evenly.
 ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_t object,
                       const ObjectSample& middle, std::size_t k, std::size_t count) {
   const auto& exposure = view.times();
-  const double turn = turn_rad(view, object) / double(count);
-  const int halves = 2 * std::clamp(int(std::ceil(turn / still_enough_rad / 2)), 1, 256);
+  constexpr double most_halves = 256.0, golden = 0.6180339887498949;
+  const double turn =
+      turn_rad(view, object, double(k) / double(count), double(k + 1) / double(count));
+  const double wanted = std::max(1.0, std::ceil(turn / still_enough_rad / 2));
+  const bool few = wanted > most_halves;
+  const int halves = 2 * int(std::min(wanted, most_halves));
+  const auto within = [&](int i) {
+    const double n = double(k) * halves + i;
+    return few ? n * golden - std::floor(n * golden) : 0.5;
+  };
   const ObjectShape& shape = *sampler.shape(object);
   const auto at = [&](double part) { return exposure.at((double(k) + part) / double(count)); };
   double half[2] = {};
+  ArcLight light{.sunlit = middle.sunlit};
   for (int i = 0; i < halves; ++i) {
-    const SimTime t = at((i + 0.5) / halves);
-    half[2 * i / halves] +=
+    const SimTime t = at((i + within(i)) / halves);
+    const double photons =
         sampler.shape_photons(object, shape, t, view.observer(t), middle.sunlit, 0);
+    half[2 * i / halves] += photons;
+    if (photons > light.most) {
+      light.most = photons;
+      light.brightest = t;
+    }
   }
   double sum = half[0] + half[1];
-  ArcLight light{.tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0};
+  light.tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0;
   if (has_secondary_light(view)) {
     const SimTime t = at(0.5);
     const auto pose = shape_pose(view, object, t, view.observer(t).position_m);
@@ -77,14 +96,14 @@ std::vector<Arc> simplified(std::vector<Arc> arcs) {
 }
 
 /// The instant of the brightest pose within a part of the exposure; its middle, unless another is
-/// twice as bright.
+/// twice as bright. `lights`: of the arcs of that part, whose instants are closer.
 SimTime brightest(const View& view, const ObjectSampler& sampler, std::size_t object, double begin,
-                  double end) {
+                  double end, const std::vector<ArcLight>& lights) {
   const SimTime middle = view.times().at((begin + end) / 2);
-  if (turn_rad(view, object) * (end - begin) < still_enough_rad) return middle;
+  if (turn_rad(view, object, begin, end) < still_enough_rad) return middle;
   constexpr int looks = 16;
-  const auto light = [&](SimTime t) {
-    return sampler.shape_photons(object, *sampler.shape(object), t, view.observer(t), 1.0, 0);
+  const auto light = [&](SimTime t, double sunlit = 1.0) {
+    return sampler.shape_photons(object, *sampler.shape(object), t, view.observer(t), sunlit, 0);
   };
   SimTime best = middle;
   double most = 2.0 * light(middle);
@@ -95,6 +114,9 @@ SimTime brightest(const View& view, const ObjectSampler& sampler, std::size_t ob
       best = t;
     }
   }
+  constexpr double missed = 100.0;  // a glint between the looks is brighter than they
+  for (const ArcLight& arc : lights)
+    if (arc.most > missed * light(best, arc.sunlit)) best = arc.brightest;
   return best;
 }
 
@@ -140,7 +162,10 @@ std::vector<ShapeSnapshot> snapshots_of(const View& view, const ObjectSampler& s
     const std::size_t first = count * std::size_t(pose) / std::size_t(poses);
     const std::size_t last = count * (std::size_t(pose) + 1) / std::size_t(poses);
     const double begin = double(first) / double(count), end = double(last) / double(count);
-    const ExposureInstant at(view, brightest(view, sampler, object, begin, end));
+    std::vector<ArcLight> lights;
+    for (std::size_t k = first; k < last; ++k)
+      lights.push_back(light_of_arc(view, sampler, object, samples[2 * k + 1], k, count));
+    const ExposureInstant at(view, brightest(view, sampler, object, begin, end, lights));
     auto shape_at =
         shape_pose(view, object, at.time, at.observer.position_m, earthshine_picture_rings);
     if (!shape_at) continue;
@@ -154,7 +179,7 @@ std::vector<ShapeSnapshot> snapshots_of(const View& view, const ObjectSampler& s
                            .sweep = {},
                            .share = end - begin};
     for (std::size_t k = first; k < last; ++k) {
-      const auto light = light_of_arc(view, sampler, object, samples[2 * k + 1], k, count);
+      const ArcLight& light = lights[k - first];
       Arc arc{{}, {}, {}, light.signal_e, light.tilt};
       if (placed && sample.pixel)
         for (const auto& [place, i] : {std::pair(&arc.start, 0), {&arc.middle, 1}, {&arc.end, 2}})

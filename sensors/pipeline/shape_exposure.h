@@ -22,7 +22,7 @@ inline constexpr int most_poses = 64;
 
 /// A resolved object in `poses` poses, each swept along its part of the path. `samples` as for
 /// `arcs_of`, of as many arcs as poses or more. The light is that of `shape_arcs`; each pose is
-/// that of the brightest of some instants of its time.
+/// that of the brightest of some instants of its time, glints between them included.
 std::vector<ShapeSnapshot> snapshots_of(const View& view, const ObjectSampler& sampler,
                                         std::size_t object,
                                         const std::vector<ObjectSample>& samples, int poses);

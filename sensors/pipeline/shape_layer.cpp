@@ -87,15 +87,17 @@ class ShapePainter {
     for (int y = 0; y < tile.rows; ++y)
       for (int x = 0; x < tile.columns; ++x) {
         const std::size_t pixel = std::size_t(y) * std::size_t(tile.columns) + std::size_t(x);
-        if (!(tile.coverage[pixel] > 0.0f)) continue;
+        // Light of facets thinner than the samples may be where nothing is covered.
+        if (!(tile.coverage[pixel] > 0.0f || tile.radiance[pixel] > 0.0f)) continue;
         const double u = (x + camera.left - camera.principal_x_px) / camera.focal_px;
         const double v = (y + camera.top - camera.principal_y_px) / camera.focal_px;
         const auto place = project(optics_, window.camera_from_tile * Vec<TileAxes>{u, v, 1.0});
         if (!place) continue;
         const double solid_angle_sr =
             1.0 / (camera.focal_px * camera.focal_px) / std::pow(1.0 + u * u + v * v, 1.5);
-        cover(snapshot, *place, window.pixel_side_px,
-              tile.coverage[pixel] * solid_angle_sr / pixel_solid_angle_sr(optics_, *place));
+        if (tile.coverage[pixel] > 0.0f)
+          cover(snapshot, *place, window.pixel_side_px,
+                tile.coverage[pixel] * solid_angle_sr / pixel_solid_angle_sr(optics_, *place));
         if (snapshot.photons_per_s_m2 > 0.0)
           add_light(snapshot, *place,
                     tile.radiance[pixel] * solid_angle_sr / snapshot.photons_per_s_m2 *

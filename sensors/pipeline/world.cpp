@@ -7,6 +7,7 @@
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/config/object_names.h"
+#include "core/frames/rotation_angle.h"
 #include "core/orbit/interpolation.h"
 #include "core/sky/sun_moon.h"
 
@@ -138,6 +139,42 @@ std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime
   const double tick_s = (after->time - before->time).seconds();
   return rotation_of<Gcrs, Body>(
       interpolate_attitude((t - before->time).seconds() / tick_s, tick_s, *start, *end));
+}
+
+namespace {
+
+/// Angular speed of the interpolated attitude, by a difference over less than 0.1 rad.
+double rate_rad_per_s(double u, double tick_s, const AttitudeState& start,
+                      const AttitudeState& end) {
+  const double most_rad =  // of a tick
+      20.0 + tick_s * (3.0 * norm(start.rate_rad_per_s) + norm(end.rate_rad_per_s));
+  const double du = 0.05 / most_rad;
+  const auto at = [&](double part) {
+    return rotation_of<Gcrs, Body>(interpolate_attitude(part, tick_s, start, end));
+  };
+  return rotation_angle_rad(at(u + du) * at(u - du).inverse()) / (2.0 * du * tick_s);
+}
+
+}  // namespace
+
+double World::turn_rad(std::size_t i, SimTime start, SimTime end) const {
+  constexpr int steps = 8;  // of one tick, within which the rate is smooth
+  const auto k = place(i);
+  double turn = 0.0;
+  for (std::size_t tick = 1; k && tick < states_.size(); ++tick) {
+    const ObjectStates &before = *states_[tick - 1], &after = *states_[tick];
+    const SimTime from = std::max(start, before.time), to = std::min(end, after.time);
+    if (!(from < to)) continue;
+    const auto a = before.attitude(*k), b = after.attitude(*k);
+    if (!a || !b) continue;
+    const double tick_s = (after.time - before.time).seconds();
+    const double step_s = (to - from).seconds() / steps;
+    for (int step = 0; step < steps; ++step) {
+      const double t_s = (from - before.time).seconds() + (step + 0.5) * step_s;
+      turn += step_s * rate_rad_per_s(t_s / tick_s, tick_s, *a, *b);
+    }
+  }
+  return turn;
 }
 
 EnvironmentState run_on(EnvironmentState state, SimTime t) {

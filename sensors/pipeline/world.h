@@ -70,6 +70,10 @@ class World {
   /// Attitude between the ticks around `t`; nothing for an object without one. `t` as for `motion`.
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body(std::size_t i, SimTime t) const;
 
+  /// Angle that the object turns by from `start` to `end` [rad], whole turns too; 0 for an object
+  /// without an attitude. Times as for `motion`.
+  double turn_rad(std::size_t i, SimTime start, SimTime end) const;
+
   /// The environment at `t`: that last published at or before it, run on by its rates (`run_on`).
   EnvironmentState environment(SimTime t) const;
   /// That published for `t` itself; null if there is none.
