@@ -9,11 +9,14 @@
 #include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
+#include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/pictures/picture_file.h"
 #include "launch/commands.h"
+#include "launch/notes.h"
 #include "launch/progress.h"
 #include "launch/run_directory.h"
+#include "launch/run_lock.h"
 #include "launch/tradeoff_page.h"
 
 namespace dmise {
@@ -25,7 +28,7 @@ struct TradeoffOptions {
   int repeats = 3;
 };
 
-/// The rows of an earlier call with the same digest, which is in the file's first line.
+/// The rows of an earlier call with the same `head`, the file's first line.
 std::vector<TradeoffRow> known_rows(const std::string& path, const std::string& head) {
   std::vector<TradeoffRow> rows;
   if (!path_exists(path)) return rows;
@@ -43,9 +46,10 @@ void tradeoff(const TradeoffOptions& options) {
       options.sensor.empty() ? scenario.sensors.front().name : options.sensor;
   sensor_named(scenario, sensor);
   make_directories(options.out, "--out");
+  const auto lock = lock_directory(options.out);
   const std::string digest = scenario_digest(scenario);
-  const std::string head = "# " + digest + " " + sensor + " frame " +
-                           std::to_string(options.frame) + " repeats " +
+  const std::string head = "# " + software_name() + " tradeoff " + digest + " " + sensor +
+                           " frame " + std::to_string(options.frame) + " repeats " +
                            std::to_string(options.repeats);
   const std::string csv = options.out + "/tradeoff.csv";
   auto rows = known_rows(csv, head);
@@ -79,6 +83,7 @@ void tradeoff(const TradeoffOptions& options) {
   write_picture(options.out + "/budgets.png", chart_picture(budgets_chart(rows)));
   for (const auto& kind : error_kinds)
     write_file_whole(options.out + "/" + kind.key + ".svg", chart_svg(effects_chart(rows, kind)));
+  for (const auto& note : trade.notes()) print_note(note);
   std::printf("%s/index.html: %zu rows\n", options.out.c_str(), rows.size());
 }
 

@@ -7,6 +7,7 @@ stopped without changing what it had measured.
 import csv
 import json
 import subprocess
+import time
 
 from harness import check, main
 
@@ -23,6 +24,32 @@ sensors:
     cadence_s: 5
     sky: dark
 """
+
+
+# A lens of 200 degrees over 96 pixels: every pixel is near a star, and every star near another.
+WIDE = SCENARIO.replace("projection: gnomonic", "projection: kannala_brandt, distortion: {k1: 0.02}").replace(
+    "pixel_pitch_m: 2.0e-5, focal_length_m: 0.1, aperture_m: 0.05", "pixel_pitch_m: 2.0e-5, field_of_view_deg: 200, aperture_m: 0.05, equivalent_aperture: true")
+
+
+def test_wide(binary, directory):
+    """Where nothing can show an error none is recorded."""
+    scenario, out = directory / "wide.yaml", directory / "wide"
+    scenario.write_text(WIDE)
+    done = subprocess.run([binary, "tradeoff", scenario, "--out", out, "--repeats", "1"], capture_output=True, text=True)
+    check(done.returncode == 0, f"a wide lens: {done.stderr[-300:]}")
+    check("note: the frame has no isolated source: photometry_mag and position_px are not measured" in done.stderr,
+          f"it says what is not measured: {done.stderr}")
+    rows = json.loads((out / "tradeoff.json").read_text())["rows"]
+    check(all(row["measured"]["photometry_mag"] is None and row["detected"] is None for row in rows), "null in JSON")
+    sky = next(row for row in rows if row["effect"] == "sky" and row["level"] == "off")
+    check(sky["bound"]["background_sigma"] is None or sky["bound"]["background_sigma"] > 0,
+          "a forced level states the bound that it has as a level")
+    text = (out / "tradeoff.csv").read_text()
+    check(",," in text and "nan" not in text, "empty in CSV")
+    before = (out / "tradeoff.csv").read_bytes()
+    subprocess.run([binary, "tradeoff", scenario, "--out", out, "--repeats", "1"], check=True, capture_output=True)
+    check((out / "tradeoff.csv").read_bytes() == before, "rows with empty fields are read back")
+    check("<td>- / " in (out / "index.html").read_text(), "- on the page")
 
 
 def test(binary, directory):
@@ -54,6 +81,17 @@ def test(binary, directory):
     check(rows()[:4] == first[:4] and len(rows()) == len(first), "it goes on where it was stopped")
     check(tradeoff("--sensor", "nobody", expect=2).stderr.count("\n") == 1, "an unknown sensor is refused in one line")
     check(tradeoff("--frame", "99", expect=2).stderr.count("\n") == 1, "a frame after the run is refused in one line")
+
+    head = table.read_text().splitlines()[0]
+    table.write_text(table.read_text().replace(head, head.replace("DMISE ", "DMISE 0.")))
+    one = subprocess.Popen([binary, "tradeoff", scenario, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    deadline = time.monotonic() + 60
+    while not (out / ".run-lock").exists() and one.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    refusal = tradeoff(expect=2).stderr
+    check("is in use by" in refusal and refusal.count("\n") == 1, f"a second one is refused while the first works: {refusal}")
+    check(one.wait() == 0 and table.read_text().splitlines()[0] == head, "rows of another version are measured again")
+    test_wide(binary, directory)
 
 
 main(test)
