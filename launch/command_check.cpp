@@ -2,7 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -11,12 +14,14 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "core/orbit/interpolation_error.h"
+#include "core/time/iso8601.h"
 #include "launch/commands.h"
 #include "launch/common_options.h"
 #include "launch/host_names.h"
@@ -35,17 +40,31 @@ struct CheckOptions {
   bool json = false;
 };
 
-/// Throws `ConfigError` if products cannot be written to `out`; leaves nothing behind.
+/// Writes an empty file into `out` as a run would, which may have to make the directory, and
+/// removes what it made. Throws `ConfigError` if that fails.
 void check_directory(const std::string& out) {
   namespace fs = std::filesystem;
   std::error_code ignored;
+  std::vector<fs::path> made;  // the innermost first
   fs::path at = fs::absolute(out).lexically_normal();
   if (!at.has_filename()) at = at.parent_path();
-  while (!fs::exists(at, ignored) && at.has_relative_path()) at = at.parent_path();
+  for (; !fs::exists(at, ignored) && at.has_relative_path(); at = at.parent_path())
+    made.push_back(at);
   if (!fs::is_directory(at, ignored))
     throw ConfigError("--out: " + at.string() + " is not a directory, got " + out);
-  if (access(at.c_str(), W_OK | X_OK) != 0)
-    throw ConfigError("--out: " + at.string() + " can't be written to, got " + out);
+  struct Removal {
+    const std::vector<fs::path>& made;
+    ~Removal() {
+      std::error_code ignored;
+      for (const fs::path& directory : made) fs::remove(directory, ignored);
+    }
+  } removal{made};
+  make_directories(out, "--out");
+  std::string file = out + "/.check-XXXXXX";
+  const int fd = mkstemp(file.data());
+  if (fd < 0) throw ConfigError("--out: " + out + ": can't be written: " + std::strerror(errno));
+  close(fd);
+  unlink(file.c_str());
 }
 
 /// Throws `ConfigError` if a process of a launch has no key.
@@ -170,8 +189,10 @@ void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const 
                 bool has_stars) {
   JsonWriter json;
   json.begin_object().field("scenario", printable(scenario.path));
-  json.field("start_utc", scenario.start_utc).field("duration_s", scenario.duration.seconds());
-  json.field("tick_s", scenario.tick.seconds());
+  json.field("start_utc", format_utc(clock.utc({0}), 6));
+  // Divided, so that 60 s are 60.
+  json.field("duration_s", double(scenario.duration.ns) / 1e9);
+  json.field("tick_s", double(scenario.tick.ns) / 1e9);
   json.field("objects", outlook.objects);
   json.key("sensors").begin_array();
   for (const auto& sensor : outlook.sensors) write_json(json, sensor, clock);
@@ -210,13 +231,15 @@ void add_check_command(CLI::App& app) {
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--out", options->out, "also check that products can be written there");
-  command->add_option("--keys", options->keys,
-                      "also check that this directory has the key of every process of a launch");
+  auto* keys = command->add_option(
+      "--keys", options->keys,
+      "also check that this directory has the key of every process of a launch");
   command
       ->add_option("--hosts", options->hosts,
                    "with --keys: also of this number of agents, as in a launch")
       ->default_val(0)
-      ->check(CLI::Range(0, 10000));
+      ->check(CLI::Range(0, 10000))
+      ->needs(keys);
   add_number_option(*command, "--limb-deg", options->limb_deg, 0.0, 180.0,
                     "warn of cameras in orbit that point nearer to the Earth's limb");
   command->callback([options] { check(*options); });

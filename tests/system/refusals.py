@@ -61,6 +61,25 @@ def test(binary, directory):
     with Run(binary, "launch", good, "--out", directory / "f", "--keys", keys) as run:
         refused(run, "FIFO for a key", 1, f"{keys}/alpha.pub: is a FIFO, not a regular file")
 
+    for out, reason in ((directory / ("n" * 300), "can't be made"), ("/proc", "can't be written"),
+                        ("/proc/x", "can't be made"), (directory / "file/out", "is not a directory")):
+        with Run(binary, "check", good, "--out", out) as run:
+            refused(run, "check of a directory that a run could not write", 2, "--out: ", reason)
+    with Run(binary, "check", good, "--hosts", "3") as run:
+        refused(run, "hosts without keys", 2, "--hosts", "--keys")
+    zoned = directory / "zoned.yaml"
+    zoned.write_text(good.read_text().replace("2018-01-21T00:15:00Z", "2018-01-21 00:15:00").replace(
+        "duration_s: 3600", "duration_s: 60"))
+    done = subprocess.run([binary, "check", zoned, "--json", "--out", directory / "g/h"], capture_output=True, text=True,
+                          check=False)
+    check(done.returncode == 0 and not (directory / "g").exists(), f"check leaves no directory: {done.stderr}")
+    check('"start_utc":"2018-01-21T00:15:00.000000Z","duration_s":60,' in done.stdout, f"UTC and seconds: {done.stdout[:200]}")
+    first = directory / "first.yaml"
+    first.write_text(good.read_text().replace("2018-01-21T00:15:00Z", "1972-01-01T00:00:00Z").replace(
+        "duration_s: 3600", "duration_s: 10"))
+    done = subprocess.run([binary, "check", first], capture_output=True, text=True, check=False)
+    check(done.returncode == 0, f"runs may begin with UTC's first whole second: {done.stderr}")
+
 
 if __name__ == "__main__":
     main(test)
