@@ -155,9 +155,13 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   } else {
     std::set<std::uint32_t> objects;
     for (const Pass& p : passes) objects.insert(p.object);
-    std::printf("%s%s, %s to %s: %zu passes of %zu objects%s\n", first ? "" : "\n",
-                sensor.name.c_str(), format_utc(clock.utc(grid.from), 0).c_str(),
-                format_utc(clock.utc(grid.last()), 0).c_str(), passes.size(), objects.size(),
+    const std::string from = format_utc(clock.utc(grid.from), 3),
+                      to = format_utc(clock.utc(grid.last()), 3);
+    const bool whole_s = from.ends_with(".000Z") && to.ends_with(".000Z");
+    const std::size_t length = from.size() - (whole_s ? 5 : 1);
+    std::printf("%s%s, %sZ to %sZ: %zu passes of %zu objects%s\n", first ? "" : "\n",
+                sensor.name.c_str(), from.substr(0, length).c_str(), to.substr(0, length).c_str(),
+                passes.size(), objects.size(),
                 options.sunlit ? ", sunlit for a part"
                 : options.dark ? ", dark for a part"
                                : "");

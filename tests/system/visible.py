@@ -54,6 +54,10 @@ def test(binary, directory):
     day = call(binary, scenario, "--csv", "--print-only", "--night", "--from", "2018-01-21T16:00:00Z")
     check(len(day.stdout.splitlines()) == 1, "by day it leaves none")
 
+    leap = call(binary, scenario, "--sensor", "alpha", "--print-only", "--from", "2016-12-31T23:59:60.5Z", "--duration", "3")
+    check(leap.stdout.startswith("alpha, 2016-12-31T23:59:60.500Z to 2017-01-01T00:00:02.500Z: "),
+          f"the head has fractions of seconds: {leap.stdout.splitlines()[:1]} {leap.stderr}")
+
     for arguments, code, message in [
             (["--from", "2308-01-01T00:00:00Z", "--duration", "3.2e8", "--step", "3600"], 2,
              r"dmise: --from: the span ends more than 291 years after .*"),
