@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/text_fields.h"
 #include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
@@ -115,7 +116,9 @@ class Join {
     while (true) {
       try {
         master_ = numeric_address(options_.master);
-        run_id_ = ask_master(master_, answer_within_s, security).run_id;
+        const RunStatus status = ask_master(master_, answer_within_s, security);
+        require_same_scenario(status);
+        run_id_ = status.run_id;
         return;
       } catch (const ConfigError&) {
         throw;
@@ -124,6 +127,15 @@ class Join {
       }
       pause();
     }
+  }
+
+  /// Throws `ConfigError` if the run is of another scenario: its products would not be those of
+  /// one scenario.
+  void require_same_scenario(const RunStatus& status) const {
+    if (!status.scenario_digest.empty() && status.scenario_digest != digest_)
+      throw ConfigError(options_.scenario + ": is not what the run at " + options_.master +
+                        " simulates: scenario, seed, plan or a file differs (digest " + digest_ +
+                        ", the run's " + printable(status.scenario_digest, 40) + ")");
   }
 
   /// Waits until the run is over or a sensor becomes free.
@@ -169,7 +181,7 @@ class Join {
       add({"--host", host, "--config", options_.scenario});
     if (writes_products(name)) add({"--out", options_.out});
     if (kind && kind->each_sensor)
-      add({"--digest", scenario_digest(scenario_), "--seed", std::to_string(scenario_.seed)});
+      add({"--digest", digest_, "--seed", std::to_string(scenario_.seed)});
     if (kind && kind->each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
     all.insert(all.end(), options_.more.begin(), options_.more.end());
     return all;
@@ -200,6 +212,7 @@ class Join {
     // From here on signals end the process, or belong to the node.
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
+    if (signal(SIGHUP, SIG_DFL) == SIG_IGN) signal(SIGHUP, SIG_IGN);  // nohup
     if (stop_.is_set()) throw ExitWith{130};
     if (directory_lock_) directory_lock_->release_to_exec();
     become(command);
@@ -212,6 +225,7 @@ class Join {
   std::string lock_name_;  // the sensor locked by this process
   std::string master_;     // numeric address
   std::uint64_t run_id_ = 0;
+  const std::string digest_ = scenario_digest(scenario_);
   std::unique_ptr<RunLock> directory_lock_;  // of a directory not locked by the launch
 };
 
@@ -230,9 +244,12 @@ std::string nodes_to_be() {
 }
 
 void join(JoinOptions options) {
+  if (options.slot > 0 && options.node != any_sensor)
+    throw ConfigError(std::string("--slot: is for the node `") + any_sensor + "`, got " +
+                      options.node);
   if (options.slot == 0) options.slot = slot_of_environment();
   if (options.slot < 0)
-    throw ConfigError("--slot: must be from 1, got " + std::to_string(options.slot));
+    throw ConfigError("DMISE_SLOT: must be from 1, got " + std::to_string(options.slot));
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
@@ -257,10 +274,11 @@ void add_join_command(CLI::App& app) {
   add_master_option(*command, "--master", options->master)->required();
   command->add_option("--out", options->out, "directory of the run, shared by its nodes")
       ->default_val("out/launch");
-  command->add_option(
-      "--slot", options->slot,
-      "for `sensor`: index in the scenario, from 1 (or DMISE_SLOT); a surplus process "
-      "exits at once");
+  command
+      ->add_option("--slot", options->slot,
+                   "for `sensor`: index in the scenario, from 1 (or DMISE_SLOT); a surplus process "
+                   "exits at once")
+      ->check(CLI::Range(1, 1 << 20));
   command->add_option("--keys", options->keys,
                       "directory of keys (dmise keygen); without it loopback only");
   command

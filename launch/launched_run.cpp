@@ -12,10 +12,12 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
+#include "core/score/json_record.h"
 #include "core/time/iso8601.h"
 #include "launch/host_names.h"
 #include "launch/metrics_ports.h"
@@ -92,6 +94,7 @@ class Launch {
   void start_master() {
     std::error_code ignored;
     std::filesystem::remove(announcement(), ignored);
+    std::filesystem::remove(report(), ignored);
     const auto& network = scenario_.network;
     const bool restart = network.on_silent_node == OnSilentNode::restart;
     const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
@@ -109,6 +112,7 @@ class Launch {
            "--ticks",         std::to_string(scenario_.last_tick() + 1),
            "--tick-ns",       std::to_string(scenario_.tick.ns),
            "--start",         format_utc(parse_utc(scenario_.start_utc), 6),
+           "--digest",        directory_.digest(),
            "--window",        std::to_string(network.window_ticks),
            "--silent-after",  number(network.silent_after_s),
            "--start-within",  number(network.join_within_s),
@@ -250,7 +254,7 @@ class Launch {
     const bool clock_ended = clock->exit_code.has_value();
     processes_.stop(std::chrono::milliseconds(stop.is_set() ? 1300 : 500));
     outcome.nodes = status.nodes;
-    if (clock->exit_code == 0) return;  // a signal after the end
+    if (clock_ended && read_end(outcome)) return;  // also with a signal after the end
     if (stop.is_set()) {
       outcome.status = "interrupted";
     } else {
@@ -270,15 +274,30 @@ class Launch {
     }
   }
 
-  ProgressState progress_state(const RunStatus& status) const {
+  /// Reads the time-master's report of a run that ended in order; false if it did not.
+  bool read_end(RunOutcome& outcome) const {
+    if (!path_exists(report())) return false;
+    const JsonRecord end(read_text_file(report()), report());
+    if (end.get<std::string>("status") != "ended") return false;
+    outcome.dropped = end.texts("dropped");
+    outcome.reason = end.get<std::string>("cause");
+    if (!outcome.reason.empty()) outcome.status = "ended";
+    if (outcome.dropped.empty()) return true;
+    if (outcome.reason.empty())
+      outcome.status = "incomplete";
+    else
+      outcome.reason += "; ";
+    outcome.reason += "lost and dropped: " + joined(outcome.dropped, ", ");
+    return true;
+  }
+
+  ProgressState progress_state(const RunStatus& status) {
     std::optional<Tick> done;
     for (const auto& node : status.nodes)
       if (node.alive && node.name != "broker") done = std::min(done.value_or(node.done), node.done);
+    shown_tick_ = std::max({shown_tick_, done.value_or(0), first_tick_ - 1});
     ProgressState state{
-        .simulated_s =
-            std::min(scenario_.time_of(std::max({done.value_or(0), first_tick_ - 1, Tick(0)})),
-                     scenario_.duration)
-                .seconds(),
+        .simulated_s = std::min(scenario_.time_of(shown_tick_), scenario_.duration).seconds(),
         .duration_s = scenario_.duration.seconds(),
         .frames_total = frames_total_};
     for (const auto& sensor : scenario_.sensors) {
@@ -307,6 +326,7 @@ class Launch {
   const Scenario& scenario_;
   RunDirectory& directory_;
   Tick first_tick_;
+  Tick shown_tick_ = 0;  // of the progress line, which never goes back: nodes leave at the end
   MetricsPorts metrics_;
   Supervisor processes_, view_;
   std::string operator_token_;  // of the view of a run with keys
@@ -325,6 +345,10 @@ void launch(const LaunchOptions& options) {
     throw ConfigError("--hosts: agents can't take part in a run with on_silent_node: drop");
   if (options.hosts > 0 && !options.keys.empty())
     check_agent_keys(scenario, options.hosts, options.keys);
+  if (options.view_truth && !options.keys.empty() &&
+      !read_allowed(options.keys).at(public_key_of(options.keys, "gateway")).truth)
+    throw ConfigError("--view-truth: the key of the gateway may not see truth; dmise keygen " +
+                      options.keys + " gateway --truth makes one that may");
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
   // Find errors here, once, before any process starts.

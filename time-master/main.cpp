@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--start", options.start_utc, "UTC of the first tick (ISO 8601), for observers");
+  app.add_option("--digest", options.scenario_digest, "digest of the scenario, for those who join");
   app.add_option("--window", options.run.window_ticks, "ticks that a node may run ahead")
       ->capture_default_str();
   app.add_option("--silent-after", silent_after_s, "silence after which a node is lost [s]")

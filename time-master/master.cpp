@@ -222,6 +222,7 @@ void MasterProcess::fill(v1::Endpoints* endpoints) const {
   endpoints->set_run_id(run_id_);
   endpoints->set_tick_ns(options_.tick_length.ns);
   endpoints->set_start_utc(options_.start_utc);
+  endpoints->set_scenario_digest(options_.scenario_digest);
   endpoints->set_tick_endpoint(tick_endpoint_);
   directory_.describe(endpoints);
   describe(endpoints, coordinator_);

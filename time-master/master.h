@@ -14,8 +14,9 @@ struct MasterOptions {
   CoordinatorOptions run;  // `expected`: nodes that the clock waits for, without the broker
   bool with_broker = true;
   SimTime tick_length{1'000'000'000};
-  std::string start_utc;  // of tick 0 (ISO 8601), for status; may be empty
-  std::string keys;       // directory of keys; empty: no encryption, loopback only
+  std::string start_utc;        // of tick 0 (ISO 8601), for status; may be empty
+  std::string scenario_digest;  // for those who join; may be empty
+  std::string keys;             // directory of keys; empty: no encryption, loopback only
   Event* stop = nullptr;
   std::string announce_file;  // the address is written here when bound
   int announce_fd = -1;       // and here, as one line

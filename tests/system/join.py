@@ -87,6 +87,10 @@ def test(binary, directory):
         for slot in (2, 1):  # before there is anybody to join
             stack.join("sensor", "--slot", str(slot), called=f"slot {slot}")
         stack.launch()
+        code, err = says(binary, "join", scenario, "alpha", "--seed", 9, "--master", stack.address, "--out", out, "--keys", shown)
+        check(code == 2 and "seed" in err, f"who has another seed or scenario can't join: {err}")
+        code, err = says(binary, "join", scenario, "broker", "--slot", 1, "--master", stack.address)
+        check(code == 2 and "--slot" in err, f"a node with a name has no slot: {err}")
         for node in (*NODES, *NOT_NEEDED):
             stack.join(node)
         codes = stack.finish()

@@ -63,6 +63,7 @@ RunStatus status_of(const v1::Endpoints& e) {
                    .last_tick = e.last_tick(),
                    .tick_length = {e.tick_ns()},
                    .start_utc = e.start_utc(),
+                   .scenario_digest = e.scenario_digest(),
                    .settled = e.settled_tick(),
                    .paused = e.paused(),
                    .pace = e.pace(),

@@ -33,8 +33,9 @@ struct RunStatus {
   Tick granted = -1;
   Tick last_tick = 0;
   SimTime tick_length;
-  std::string start_utc;  // of tick 0; empty if unknown
-  Tick settled = -1;      // last tick done by all
+  std::string start_utc;        // of tick 0; empty if unknown
+  std::string scenario_digest;  // empty if unknown
+  Tick settled = -1;            // last tick done by all
   bool paused = false;
   double pace = 0.0;           // simulated seconds per second asked for; 0: as fast as possible
   std::uint64_t overruns = 0;  // ticks behind real time
