@@ -1,5 +1,10 @@
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "core/base/error.h"
 #include "core/base/memory.h"
@@ -21,25 +26,41 @@ constexpr void (*commands[])(CLI::App&) = {
     add_health_command, add_clock_command,   add_survey_command,       add_tradeoff_command,
     add_bench_command,  add_manual_commands};
 
-}  // namespace
-}  // namespace dmise
+/// Returns `code`, or 1 with a line on stderr if what was printed could not be written. A reader
+/// that went away (`| head`) is no error.
+int after_output(int code) {
+  errno = 0;
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout);
+  const int reason = errno;  // 0 if an earlier piece failed
+  pollfd output{.fd = STDOUT_FILENO, .events = 0, .revents = 0};
+  const bool reader_gone = poll(&output, 1, 0) > 0 && (output.revents & POLLERR);
+  if (code != 0 || !failed || reader_gone) return code;
+  std::fprintf(stderr, "dmise: standard output can't be written%s%s\n", reason ? ": " : "",
+               reason ? std::strerror(reason) : "");
+  return 1;
+}
 
-int main(int argc, char** argv) {
-  dmise::return_large_blocks();
+int run(int argc, char** argv) {
+  return_large_blocks();
   CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
-  app.set_version_flag("--version", dmise::version_text("dmise"));
+  app.set_version_flag("--version", version_text("dmise"));
   app.require_subcommand(1);
-  for (const auto add_command : dmise::commands) add_command(app);
+  for (const auto add_command : commands) add_command(app);
   constexpr std::size_t longest = 4000;  // of an error message [bytes]
   try {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& e) {
-    return dmise::end_of_command_line(app, e);
-  } catch (const dmise::ExitWith& e) {
+    return end_of_command_line(app, e);
+  } catch (const ExitWith& e) {
     return e.code;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "dmise: %s\n", dmise::printable(e.what(), longest).c_str());
-    return dynamic_cast<const dmise::ConfigError*>(&e) ? 2 : 1;
+    std::fprintf(stderr, "dmise: %s\n", printable(e.what(), longest).c_str());
+    return dynamic_cast<const ConfigError*>(&e) ? 2 : 1;
   }
 }
+
+}  // namespace
+}  // namespace dmise
+
+int main(int argc, char** argv) { return dmise::after_output(dmise::run(argc, argv)); }

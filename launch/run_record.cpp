@@ -4,6 +4,7 @@
 #include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/paths.h"
+#include "core/base/printable.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"
@@ -31,6 +32,7 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
   JsonWriter json;
   json.begin_object().field("status", outcome.status).field("how", outcome.how);
   if (!outcome.reason.empty()) json.field("reason", outcome.reason);
+  json.list("dropped", outcome.dropped);
   json.field("software", software_name()).field("digest", directory.digest());
   json.field("seed", scenario.seed).field("wall_s", outcome.wall_s);
   json.list("catalogue_sha256", directory.catalogue_sha256());
@@ -84,7 +86,10 @@ std::string summary_text(const RunDirectory& directory, const Scenario& scenario
     text += formatted("%-20s %7d %8d %11d %11.2f %10.0f\n", s.name.c_str(), s.frames, s.objects,
                       s.detections, s.seconds_per_frame, s.memory_mb);
   text +=
-      formatted("%s in %.1f s (%s)\n", outcome.status.c_str(), outcome.wall_s, outcome.how.c_str());
+      formatted("%s in %.1f s (%s)", outcome.status.c_str(), outcome.wall_s, outcome.how.c_str());
+  if (outcome.status != "failed" && !outcome.reason.empty())
+    text += ": " + printable(outcome.reason, 400);
+  text += "\n";
   return text + what_to_open(directory, scenario);
 }
 

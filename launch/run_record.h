@@ -10,11 +10,13 @@ namespace dmise {
 
 /// How a run ended.
 struct RunOutcome {
-  std::string status = "complete";  // complete | interrupted | failed
-  std::string how;                  // "one process" or "a process per node"
-  std::string reason;               // of a failure
+  /// complete; incomplete: without dropped nodes; ended: early, on request; interrupted; failed
+  std::string status = "complete";
+  std::string how;     // "one process" or "a process per node"
+  std::string reason;  // unless complete or interrupted
   double wall_s = 0.0;
-  std::vector<NodeStatus> nodes;  // of processes
+  std::vector<NodeStatus> nodes;     // of processes
+  std::vector<std::string> dropped;  // nodes that the run went on without
 };
 
 /// Writes run.json: what ran, seed, digests, plan, time per effect and frame. The only product with

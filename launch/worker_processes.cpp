@@ -106,6 +106,7 @@ WorkOutcome work_in_processes(std::size_t items, int workers,
     if (pid == 0) {
       std::signal(SIGINT, SIG_DFL);
       std::signal(SIGTERM, SIG_DFL);
+      if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       if (getppid() != parent) _exit(1);  // it had ended before
       work_until_done(board, items, work);
@@ -123,7 +124,7 @@ WorkOutcome work_in_processes(std::size_t items, int workers,
       } else if (WIFSIGNALED(*status)) {
         // Ctrl-C is sent to all processes of a terminal, also to this one.
         const int signal = WTERMSIG(*status);
-        if (signal == SIGINT || signal == SIGTERM) outcome.interrupted = true;
+        if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) outcome.interrupted = true;
         outcome.failure = "a worker was ended by signal " + std::to_string(signal) +
                           ": the same command continues";
       } else {

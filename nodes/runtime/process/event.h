@@ -23,7 +23,8 @@ class Event {
   int fd_ = -1;
 };
 
-/// The event that SIGINT and SIGTERM set from now on, for an orderly exit.
+/// The event that SIGINT, SIGTERM and SIGHUP set from now on, for an orderly exit. SIGHUP stays
+/// ignored where it is (nohup).
 Event& stop_signal();
 
 }  // namespace dmise

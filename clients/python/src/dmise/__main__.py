@@ -44,12 +44,18 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _stop_signals() -> list[int]:
+    """Without a hang-up that is ignored (nohup)."""
+    return [number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+            if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN]
+
+
 def _record(options: argparse.Namespace) -> int:
     if options.file.exists() and not options.force:
         raise ValueError(f"{options.file}: exists; --force replaces it")
     topics = [topic for topic in options.topics.split(",") if topic]
     recorder = Recorder(options.address, options.file, *topics, truth=options.truth, keys=options.keys, name=options.name)
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in _stop_signals():
         signal.signal(number, lambda *_: recorder.close())
     print(recorder.record(), file=sys.stderr)
     return 1 if recorder.gaps else 0
@@ -57,7 +63,7 @@ def _record(options: argparse.Namespace) -> int:
 
 def _replay(options: argparse.Namespace) -> int:
     replay = Replay(options.file, options.speed, options.listen, options.observers)
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in _stop_signals():
         signal.signal(number, lambda *_: replay.close())
     print(replay.address, flush=True)
     replay.run()
