@@ -60,9 +60,9 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                                              const std::string& directory,
                                              std::shared_ptr<const StarMap> stars,
                                              Threads& threads) {
-  return std::make_unique<SensorEvaluator>(sensor_settings(scenario, name, digest),
-                                           run_grid(scenario), scenario.output, std::move(stars),
-                                           directory + "/" + name, threads);
+  return std::make_unique<SensorEvaluator>(
+      sensor_settings(scenario, name, digest), run_grid(scenario), scenario.output,
+      std::move(stars), directory.empty() ? "" : directory + "/" + name, threads);
 }
 
 }  // namespace dmise

@@ -19,7 +19,7 @@ PipelineSettings sensor_settings(const Scenario& scenario, const std::string& na
 RunGrid run_grid(const Scenario& scenario);
 
 /// The sensor `name` of the scenario. `digest` goes into its frames; `directory` is the run's, the
-/// sensor writes into its own below it.
+/// sensor writes into its own below it; empty: it writes nothing.
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
                                              const std::string& digest,
                                              const std::string& directory,

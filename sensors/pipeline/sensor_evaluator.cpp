@@ -15,6 +15,7 @@ SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid
                                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
                                  std::string directory, Threads& threads)
     : SensorEvaluator(settings, grid, std::move(stars), threads) {
+  if (directory.empty()) return;
   if (is_cued()) cues_.emplace(directory);
   writer_.emplace(std::move(directory), output, settings.clock);
 }
