@@ -24,7 +24,8 @@ void add_frame_options(CLI::App& command, const std::shared_ptr<FrameChoice>& ch
           if (at == std::string::npos || key.empty() || key.size() > 8 ||
               key.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") != key.npos)
             throw ConfigError("--set: must be KEYWORD=VALUE, got " + printable(pair, 80));
-          choice->stated[key] = pair.substr(at + 1);
+          if (!choice->stated.emplace(key, pair.substr(at + 1)).second)
+            throw ConfigError("--set: " + key + ": is stated twice");
         }
       },
       "KEYWORD=VALUE that another camera's header lacks or has wrong, such as EGAIN=0.5; "

@@ -79,8 +79,17 @@ std::vector<double> values_of(FitsImage& image, int first, int together, const S
   return values;
 }
 
+/// A stated value must be one, and a keyword that nothing reads is noted.
+void check_stated(const StandardCards& cards, const FrameChoice& choice, const std::string& name) {
+  for (const auto& [key, value] : choice.stated) {
+    cards.require_accepted(key, name);
+    if (!cards.was_read(key)) cards.missing(key + ": is stated, but nothing reads it here");
+  }
+}
+
 Frame foreign_frame(FitsImage& image, const FitsValues& values, const PlanePlace& place,
-                    int together, const std::string& name, Threads& threads) {
+                    int together, const FrameChoice& choice, const std::string& name,
+                    Threads& threads) {
   Frame frame;
   const StandardCards cards(values, frame.notes);
   const auto pixels = values_of(image, place.plane, together, cards, name);
@@ -90,6 +99,7 @@ Frame foreign_frame(FitsImage& image, const FitsValues& values, const PlanePlace
   const CountSource source{pixels, map, together};
   set_detector(cards, source, frame.counts, threads, frame.header);
   set_star_images(cards, frame.counts, threads, frame.header);
+  check_stated(cards, choice, name);
   return frame;
 }
 
@@ -108,7 +118,7 @@ void decode_frames(std::string_view bytes, const std::string& name, const FrameC
   const Planes planes = planes_of(image, StandardCards(values, unused), choice, name);
   for (int plane = planes.first; plane <= planes.last; plane += planes.together)
     take(foreign_frame(image, values, {plane, image.planes() / planes.together}, planes.together,
-                       name, threads));
+                       choice, name, threads));
 }
 
 void read_frames_of(const std::string& path, const FrameChoice& choice, Threads& threads,

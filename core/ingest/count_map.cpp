@@ -129,10 +129,10 @@ CountMap choose_count_map(std::span<const double> values, int columns) {
   if (range.whole && width <= most_count) return {range.least, 1.0};
   double step = pixel_noise(values, columns) / 16;
   if (range.whole) step = std::max(1.0, std::floor(step));
-  // Without noise, and where the noise is lost in the numbers' own steps.
-  if (!(step > width * 1e-12)) step = std::max(width / most_count, 1e-30);
-  if (width <= most_count * step) return {range.least, step};
   const double median = median_of(sample(values, 1 << 20));
+  // Without noise, and where the noise is lost in the numbers' own steps.
+  if (!(step > std::abs(median) * 1e-12)) step = std::max(width / most_count, 1e-30);
+  if (width <= most_count * step) return {range.least, step};
   const double down = std::min(median - range.least, 0.05 * most_count * step);
   return {range.whole ? std::floor(median - down) : median - down, step};
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/text_fields.h"
 #include "core/products/observation.h"
 
@@ -34,6 +35,7 @@ std::vector<std::string> parts_of(const std::string& text) {
 }  // namespace
 
 std::string StandardCards::text(const std::string& key) const {
+  read_.insert(key);
   const auto at = values_.find(key);
   return at == values_.end() ? "" : header_text(at->second);
 }
@@ -73,11 +75,17 @@ std::optional<double> StandardCards::angle_deg(const std::string& key, bool hour
     }
     sum += std::abs(*part) * unit;
   }
-  return (value.starts_with('-') ? -sum : sum) * (hours ? 15.0 : 1.0);
+  return (parts.front().starts_with('-') ? -sum : sum) * (hours ? 15.0 : 1.0);
 }
 
 void StandardCards::reject(const std::string& key, const std::string& reason) const {
-  missing(key + ": " + reason + ", got " + text(key));
+  rejected_[key] = reason + ", got " + text(key);
+  missing(key + ": " + rejected_[key]);
+}
+
+void StandardCards::require_accepted(const std::string& key, const std::string& name) const {
+  if (const auto at = rejected_.find(key); at != rejected_.end())
+    throw ConfigError(name + ": " + key + ": " + at->second);
 }
 
 }  // namespace dmise

@@ -1,6 +1,8 @@
 #pragma once
 #include <initializer_list>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -15,7 +17,10 @@ class StandardCards {
  public:
   StandardCards(const FitsValues& values, FrameNotes& notes) : values_(values), notes_(notes) {}
 
-  bool has(const std::string& key) const { return values_.contains(key); }
+  bool has(const std::string& key) const {
+    read_.insert(key);
+    return values_.contains(key);
+  }
   /// Printable ASCII; empty if the keyword is missing or blank.
   std::string text(const std::string& key) const;
   std::optional<double> number(const std::string& key) const;
@@ -38,9 +43,16 @@ class StandardCards {
   /// Notes that a keyword's value is not used: "KEY: reason, got VALUE".
   void reject(const std::string& key, const std::string& reason) const;
 
+  /// Whether anything has asked for a keyword so far.
+  bool was_read(const std::string& key) const { return read_.contains(key); }
+  /// Throws `ConfigError` "NAME: KEY: reason, got VALUE" if a keyword's value was rejected.
+  void require_accepted(const std::string& key, const std::string& name) const;
+
  private:
   const FitsValues& values_;
   FrameNotes& notes_;
+  mutable std::set<std::string> read_;
+  mutable std::map<std::string, std::string> rejected_;  // why, by keyword
 };
 
 }  // namespace dmise

@@ -155,8 +155,8 @@ Wcs read_wcs(const StandardCards& cards) {
   if (!(std::abs(wcs.ra_rad) < 1e3)) throw Unknown{"CRVAL" + ra, "pointing: must be an angle"};
   set_matrix(cards, ra_axis, wcs);
   set_sip(cards, wcs);
-  if (cards.has("CPDIS1") || cards.has("CPDIS2"))
-    throw Unknown{"CPDIS1", "pointing: a distortion by table is not known"};
+  for (const char* key : {"CPDIS1", "CPDIS2", "D2IMDIS1", "D2IMDIS2", "CQDIS1", "CQDIS2"})
+    if (cards.has(key)) throw Unknown{key, "pointing: a distortion by table is not known"};
   return wcs;
 }
 

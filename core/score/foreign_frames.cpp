@@ -1,6 +1,7 @@
 #include "core/score/foreign_frames.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -87,10 +88,13 @@ std::vector<std::string> fits_files(const std::string& directory) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::filesystem::path file = entry.path().filename();
+    std::string name = entry.path().filename().string();
+    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::filesystem::path file = name;
     const auto packed = file.extension() == ".gz" || file.extension() == ".fz";
     const auto ending = (packed ? file.stem() : file).extension();
-    if (ending == ".fits" || ending == ".fit" || ending == ".fts") names.push_back(file.string());
+    if (ending == ".fits" || ending == ".fit" || ending == ".fts")
+      names.push_back(entry.path().filename().string());
   }
   if (error) throw ConfigError(printable(directory) + ": " + error.message());
   if (names.empty()) throw ConfigError(printable(directory) + ": has no FITS files");

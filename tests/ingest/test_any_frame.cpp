@@ -190,6 +190,10 @@ TEST(AnyFrame, FactsCanBeStated) {
   const Frame setting = read_one(image_of(scene.counts, {card("GAIN", "139")}));
   EXPECT_TRUE(setting.header.unknown.has(FrameFact::gain));
   EXPECT_THAT(setting.notes.missing, Contains(HasSubstr("got 139")));
+  const Frame misspelt = read_one(image_of(scene.counts, {}), {.stated = {{"EXPTME", "4"}}});
+  EXPECT_THAT(misspelt.notes.missing, Contains("EXPTME: is stated, but nothing reads it here"));
+  EXPECT_THAT(error_of(encoded(image_of(scene.counts, {})), {.stated = {{"EXPTIME", "abc"}}}),
+              HasSubstr("EXPTIME: is not a finite number, got abc"));
 }
 
 // A bad column and a hole are no sources, and hide no others.

@@ -56,6 +56,15 @@ TEST(CountMap, StepsAreAnEighthOfTheNoiseAtMost) {
   }
 }
 
+// Fill values, and quotients by a dead pixel of a flat.
+TEST(CountMap, NoPixelCostsTheOthersTheirSteps) {
+  for (const double outlier : {1e20, 3e12, -3e12, -1e20}) {
+    auto values = sky(1000, 20);
+    values[100] = outlier;
+    EXPECT_LE(choose_count_map(values, side).step, 20.0 / 8) << outlier;
+  }
+}
+
 TEST(CountMap, NoiseIsMeasuredBesideStarsAndSlopes) {
   auto values = sky(100, 5);
   for (int y = 0; y < side; ++y)

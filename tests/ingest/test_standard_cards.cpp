@@ -18,12 +18,14 @@ std::string start_of(const FitsValues& values) {
 TEST(StandardCards, ReadsAnglesInAllForms) {
   FrameNotes notes;
   const FitsValues values = {{"A", "12 30 36.0"}, {"B", "-00:30:00"}, {"C", "12.5"},
-                             {"D", "12 61 0"},    {"E", "north"},     {"F", "1D1"}};
+                             {"D", "12 61 0"},    {"E", "north"},     {"F", "1D1"},
+                             {"G", " -33 46 12"}};
   const StandardCards cards(values, notes);
   EXPECT_DOUBLE_EQ(*cards.angle_deg("A", true), 187.65);
   EXPECT_DOUBLE_EQ(*cards.angle_deg("B", false), -0.5);
   EXPECT_DOUBLE_EQ(*cards.angle_deg("C", false), 12.5);
   EXPECT_DOUBLE_EQ(*cards.angle_deg("F", false), 10.0);
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("G", false), -33.77);
   EXPECT_FALSE(cards.angle_deg("D", false));
   EXPECT_FALSE(cards.angle_deg("E", false));
   EXPECT_EQ(notes.missing, (std::vector<std::string>{"D: is not an angle, got 12 61 0",
