@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/mapped_file.h"
 #include "core/base/paths.h"
+#include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/user_directories.h"
 #include "core/config/search_path.h"
@@ -124,6 +125,9 @@ std::string fetch_tycho2(const std::string& from, const std::string& to) {
 }
 
 std::size_t index_stars(const std::string& from, const std::string& to) try {
+  std::error_code missing;
+  if (fs::equivalent(from, to, missing))
+    throw ConfigError("--out: must be another file than the catalogue, got " + printable(to));
   const CatalogueBytes bytes(from);
   StarReading reading = parse_stars(bytes.text, from);
   for (const std::string& problem : reading.problems) print_note(problem + " (left out)");

@@ -1,5 +1,7 @@
 // Star catalogues of comma-separated values, columns by the names in their header.
 
+#include <unordered_set>
+
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/sky/gaia_stars.h"
@@ -122,11 +124,17 @@ StarReading parse_gaia_csv(std::string_view text, const std::string& name) {
 StarReading parse_star_csv(std::string_view text, const std::string& name) {
   enum { ra, dec, mag, id, bv, pm_ra, pm_dec, parallax, epoch };
   StarReading reading;
+  std::unordered_set<std::uint32_t> ids;
   for_rows(text, name,
            {"ra_deg", "dec_deg", "mag_v", "id", "bv", "pm_ra_mas_per_yr", "pm_dec_mas_per_yr",
             "parallax_mas", "epoch_jyear"},
            3, 9, reading.problems, [&](const Row& row, std::uint32_t count) -> const char* {
              StarRecord star{.id = id_of(row, id, count)};
+             if (row.value(id).value_or(star.id) != star.id)
+               return "id: must be a whole number from 0 to 4294967295";
+             if (!ids.insert(star.id).second) return "id: another star has it";
+             if (row.value(pm_ra).has_value() != row.value(pm_dec).has_value())
+               return "pm_ra_mas_per_yr, pm_dec_mas_per_yr: must be given together";
              star.ra_rad = *row.value(ra) * deg;
              star.dec_rad = *row.value(dec) * deg;
              star.v_mag = *row.value(mag);

@@ -127,6 +127,21 @@ TEST(StarFile, BadLinesAreNamedAndTheRestIsKept) {
                                           "my.csv:6: bv: must be a number, got 'blue'"));
 }
 
+// Truth and detections name stars by their numbers.
+TEST(StarFile, NumbersOfStarsAreTheirOwn) {
+  const StarReading stars = parse_stars(
+      "ra_deg,dec_deg,mag_v,id,pm_ra_mas_per_yr,pm_dec_mas_per_yr\n10,20,3,4294967295,,\n"
+      "11,20,3,5000000000,,\n12,20,3,-3,,\n13,20,3,1.5,,\n14,20,3,7,,\n15,20,3,7,,\n"
+      "16,20,3,8,100,\n",
+      "my.csv");
+  EXPECT_THAT(stars.catalogue.id, ElementsAre(4294967295, 7));
+  const std::string whole = "id: must be a whole number from 0 to 4294967295";
+  EXPECT_THAT(stars.problems,
+              ElementsAre("my.csv:3: " + whole, "my.csv:4: " + whole, "my.csv:5: " + whole,
+                          "my.csv:7: id: another star has it",
+                          "my.csv:8: pm_ra_mas_per_yr, pm_dec_mas_per_yr: must be given together"));
+}
+
 TEST(StarFile, WhatIsNoCatalogueIsRefusedWithItsName) {
   for (const char* text : {"", "hello\n", "ra_deg,dec_deg\n1,2\n", "ra_deg,dec_deg,mag_v\n"}) {
     try {

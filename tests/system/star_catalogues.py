@@ -65,6 +65,7 @@ def test(binary, directory):
     refused("catalogue", "fetch", "tycho2", "--to", "data", "--from", "gaia.csv", reason="its SHA-256 must be")
     check(list((directory / "data").iterdir()) == [], "nothing is left of what could not be fetched")
     refused("catalogue", "index", "absent.csv", "--out", "x.stars", reason="absent.csv")
+    refused("catalogue", "index", "gaia.csv", "--out", "./gaia.csv", reason="--out")
 
 
 if __name__ == "__main__":
