@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/config/node_kinds.h"
 #include "core/config/node_names.h"
@@ -29,6 +31,17 @@ struct KeygenOptions {
 std::vector<std::string> askers_of(const NodeKind& kind, const Scenario& scenario) {
   if (kind.each_sensor || kind.wanted(scenario)) return nodes_of(kind, scenario);
   return {kind.name};
+}
+
+/// Throws `ConfigError` for a name that is given twice or whose key exists, before any key is made.
+void require_new(const std::string& directory, const std::vector<std::string>& names) {
+  std::set<std::string> seen;
+  for (const auto& name : names) {
+    if (!seen.insert(name).second)
+      throw ConfigError("names: " + printable(name) + ": is given twice");
+    const std::string path = directory + "/" + name + ".key";
+    if (path_exists(path)) throw ConfigError(path + ": this key exists already");
+  }
 }
 
 void keygen(const KeygenOptions& options) {
@@ -61,6 +74,7 @@ void keygen(const KeygenOptions& options) {
   }
   if (options.rings && several.empty()) throw ConfigError("--rings: needs --scenario");
   if (names.empty()) names.push_back(operator_name);
+  require_new(options.directory, names);
   for (const auto& name : names) {
     make_key(options.directory, name, options.truth, {agents[name].begin(), agents[name].end()});
     std::printf("%s/%s.key\n", options.directory.c_str(), name.c_str());

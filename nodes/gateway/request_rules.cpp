@@ -112,7 +112,7 @@ AccessTokens read_access_tokens(const std::string& path) {
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    std::istringstream words(line);
+    std::istringstream words(line.substr(0, line.find('#')));
     std::string kind, token, more;
     if (!(words >> kind)) continue;
     const std::string place = path + ":" + std::to_string(number) + ": ";

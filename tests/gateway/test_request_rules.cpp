@@ -28,6 +28,7 @@ TEST(AccessTokens, AreReadFromAFileOfTheirOwner) {
   EXPECT_EQ(tokens.control, operator_);
   EXPECT_EQ(tokens.truth, referee);
   EXPECT_EQ(tokens_of("view " + viewer).control, "");
+  EXPECT_EQ(tokens_of("# who may watch\nview " + viewer + "  # from the corridor\n").view, viewer);
   EXPECT_THROW(tokens_of("view " + viewer, 0644), ConfigError);
   for (const std::string& text : std::vector<std::string>{
            "", "view short", "view " + std::string(129, 'a'), "view " + viewer + " x", "view a b",

@@ -44,6 +44,9 @@ def test(binary, directory):
     check(modes == {"0o600"}, f"their owner alone may read them: {modes}")
     code, _, err = says(binary, "keygen", keys, "alpha")
     check(code == 2 and "already" in err, f"none is replaced unasked: {err}")
+    code, _, err = says(binary, "keygen", keys, "guest", "alpha")
+    check(code == 2 and not (keys / "guest.key").exists(), f"nor is one of several made: {err}")
+    check(says(binary, "keygen", keys, "guest", "guest")[0] == 2, "a name twice is refused")
 
     reference, out = directory / "reference", directory / "out"
     with Run(binary, "run", scenario, "--out", reference) as run:
