@@ -50,7 +50,9 @@ class Replay:
         self.messages = 0
         self._stop = threading.Event()
         self._context = zmq.Context()
-        self._host = listen.rpartition(":")[0]
+        self._host, _, port = listen.rpartition(":")
+        if not (port.isascii() and port.isdigit() and int(port) <= 65535):  # ZeroMQ wraps greater ones around
+            raise ValueError(f"{listen}: the port must be in 0..65535; an address is tcp://HOST:PORT")
         self._master = self._bind(zmq.ROUTER, listen)
         self.address = self._endpoint(self._master)
         self._clock = self._bind(zmq.PUB)
