@@ -10,7 +10,8 @@ namespace dmise {
 MasterResult result_of(const Coordinator& coordinator) {
   MasterResult result;
   result.reason = coordinator.cause();
-  result.exit_code = coordinator.phase() == Phase::ended && result.reason.empty() ? 0 : 1;
+  result.ended = coordinator.phase() == Phase::ended;
+  result.exit_code = result.ended && result.reason.empty() ? 0 : 1;
   result.digest = coordinator.digest();
   result.overruns = coordinator.pace().overruns();
   result.worst_lag_s = to_seconds(coordinator.pace().worst_lag());
@@ -26,7 +27,7 @@ MasterResult result_of(const Coordinator& coordinator) {
 std::string to_json(const MasterResult& result) {
   JsonWriter json;
   json.begin_object();
-  json.field("status", result.exit_code == 0 ? "ended" : "failed");
+  json.field("status", result.ended ? "ended" : "failed");
   json.field("cause", result.reason);
   json.field("granted_tick", std::int64_t(result.granted));
   json.field("wall_s", result.wall_s);

@@ -14,6 +14,7 @@ namespace dmise {
 /// Outcome of a run, as seen by its master.
 struct MasterResult {
   int exit_code = 0;                       // 0: every tick was done
+  bool ended = false;                      // in order, also early on request
   std::string reason;                      // first cause of a code other than 0
   Tick granted = -1;                       // last tick granted
   double wall_s = 0.0;                     // from the first grant to the end
