@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/units.h"
 #include "core/effects/frame_effects.h"
@@ -139,9 +140,10 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   const auto gcrs_from_camera = view.camera_from_gcrs(middle).inverse();
   const auto enu_from_gcrs = view.enu_from_gcrs(middle);
   const EarthOccultation earth = earth_seen(view, middle);
-  const bool with_sky = sensor.effects.has(SkyBackground::facts);
   const Throughput throughput(view);
-  const SkyModel sky = sky_over(view, drawn);
+  // Without a sky the band may reach beyond what is known of its light.
+  const auto sky = sensor.effects.has(SkyBackground::facts) ? std::optional(sky_over(view, drawn))
+                                                            : std::nullopt;
   const double electrons = throughput.electrons_per_photon_m2() * view.times().seconds();
   const double read_e2 =
       f.read_noise_e * f.read_noise_e + std::pow(sensor.camera.detector.gain_e_per_dn, 2) / 12.0;
@@ -158,8 +160,8 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
     sampled_moon_rad = std::min(sampled_moon_rad, angle_rad(gcrs, moon));
     if (view.on_ground()) lowest_rad = std::min(lowest_rad, std::asin(std::clamp(enu.z, 0.0, 1.0)));
     SkySample s;
-    if (with_sky) {
-      const auto photons = sky.photons_of_parts(enu);
+    if (sky) {
+      const auto photons = sky->photons_of_parts(enu);
       const double factor = electrons * pixel_solid_angle_sr(optics, at) * view.illumination(at);
       for (std::size_t part = 0; part < photons.size(); ++part) {
         s.part_e[part] = photons[part] * factor;
