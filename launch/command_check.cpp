@@ -48,7 +48,9 @@ void check_directory(const std::string& out) {
   std::vector<fs::path> made;  // the innermost first
   fs::path at = fs::absolute(out).lexically_normal();
   if (!at.has_filename()) at = at.parent_path();
-  for (; !fs::exists(at, ignored) && at.has_relative_path(); at = at.parent_path())
+  for (;
+       fs::symlink_status(at, ignored).type() == fs::file_type::not_found && at.has_relative_path();
+       at = at.parent_path())
     made.push_back(at);
   if (!fs::is_directory(at, ignored))
     throw ConfigError("--out: " + at.string() + " is not a directory, got " + out);
@@ -56,7 +58,7 @@ void check_directory(const std::string& out) {
     const std::vector<fs::path>& made;
     ~Removal() {
       std::error_code ignored;
-      for (const fs::path& directory : made) fs::remove(directory, ignored);
+      for (const fs::path& directory : made) rmdir(directory.c_str());
     }
   } removal{made};
   make_directories(out, "--out");

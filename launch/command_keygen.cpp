@@ -33,14 +33,17 @@ std::vector<std::string> askers_of(const NodeKind& kind, const Scenario& scenari
   return {kind.name};
 }
 
-/// Throws `ConfigError` for a name that is given twice or whose key exists, before any key is made.
+/// Throws `ConfigError` for a name that is given twice or whose key or public key exists, before
+/// any key is made.
 void require_new(const std::string& directory, const std::vector<std::string>& names) {
   std::set<std::string> seen;
   for (const auto& name : names) {
     if (!seen.insert(name).second)
       throw ConfigError("names: " + printable(name) + ": is given twice");
-    const std::string path = directory + "/" + name + ".key";
-    if (path_exists(path)) throw ConfigError(path + ": this key exists already");
+    for (const char* ending : {".key", ".pub"}) {
+      const std::string path = directory + "/" + name + ending;
+      if (path_exists(path)) throw ConfigError(path + ": this key exists already");
+    }
   }
 }
 

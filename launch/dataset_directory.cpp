@@ -126,9 +126,12 @@ DatasetDirectory::DatasetDirectory(std::string path, DatasetPlan plan)
 bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
   const std::string lock_path = path_ + "/.dataset-lock";
   // Without a lock, which could not be made in a directory that is only read.
-  if (!force && (path_exists(path_ + "/dataset.json") || !path_exists(lock_path)) &&
-      content() == Content::same_complete)
-    return false;
+  if (!force && (path_exists(path_ + "/dataset.json") || !path_exists(lock_path))) try {
+      if (content() == Content::same_complete) return false;
+    } catch (const ConfigError&) {
+      // Another process may have begun meanwhile.
+      if (path_exists(path_ + "/dataset.json") || !path_exists(lock_path)) throw;
+    }
   lock_.emplace(lock_path);
   const bool alone = lock(force);
   if (force) clear();
@@ -195,6 +198,9 @@ std::string DatasetDirectory::file_of_no_dataset() const {
 }
 
 void DatasetDirectory::clear() const {
+  if (path_exists(path_ + "/parts") && !is_directory(path_ + "/parts"))
+    throw ConfigError(path_ + "/parts: is not a directory");
+  remove_file(part("plan.json"));  // first: what is left, if this is stopped, is of no data set
   for (const char* name : {"/dataset.json", "/coco.json"}) {
     remove_file(path_ + name);
     remove_file(path_ + name + std::string(partial_ending));
@@ -213,7 +219,8 @@ void DatasetDirectory::remove_parts() const {
 }
 
 bool DatasetDirectory::has_shard(std::size_t shard) const {
-  return path_exists(part(shard_name(shard, ".json")));
+  return path_exists(part(shard_name(shard, ".json"))) &&
+         path_exists(path_ + "/" + shard_name(shard));
 }
 
 bool DatasetDirectory::has_sample(std::uint64_t seed) const {
@@ -307,8 +314,9 @@ std::size_t DatasetDirectory::finish() {
   std::size_t missing = 0;
   for (std::size_t shard = 0; shard < plan_.shards(); ++shard) missing += !has_shard(shard);
   if (missing > 0) return missing;
-  const bool finishes = lock_->take(finish_byte, FileLock::Use::alone);  // else another process
-  if (finishes && content() != Content::same_complete) {
+  while (!lock_->take(finish_byte, FileLock::Use::alone))  // another process finishes it
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  if (content() != Content::same_complete) {
     std::string text = head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
     for (std::size_t shard = 0; shard < plan_.shards(); ++shard)
       text += (shard > 0 ? ",\n" : "\n") + read_text_file(part(shard_name(shard, ".json")));

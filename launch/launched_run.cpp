@@ -334,6 +334,12 @@ class Launch {
   int frames_total_ = 0;
 };
 
+bool may_see_truth(const std::string& keys, const std::string& name) {
+  const auto allowed = read_allowed(keys);
+  const auto key = allowed.find(public_key_of(keys, name));
+  return key != allowed.end() && key->second.truth;
+}
+
 }  // namespace
 
 void launch(const LaunchOptions& options) {
@@ -345,8 +351,7 @@ void launch(const LaunchOptions& options) {
     throw ConfigError("--hosts: agents can't take part in a run with on_silent_node: drop");
   if (options.hosts > 0 && !options.keys.empty())
     check_agent_keys(scenario, options.hosts, options.keys);
-  if (options.view_truth && !options.keys.empty() &&
-      !read_allowed(options.keys).at(public_key_of(options.keys, "gateway")).truth)
+  if (options.view_truth && !options.keys.empty() && !may_see_truth(options.keys, "gateway"))
     throw ConfigError("--view-truth: the key of the gateway may not see truth; dmise keygen " +
                       options.keys + " gateway --truth makes one that may");
   if (options.seed) scenario.seed = *options.seed;

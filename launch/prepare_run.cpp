@@ -29,7 +29,9 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
         found + ": is in the way, and no run.json in " + directory.path() +
         " says that it is of a run; --force replaces products, --out writes elsewhere");
   RunStart start;
-  if (!force && content == Content::same_run_unfinished)
+  // Tracks that were made without a lost sensor are not those of the run with it.
+  const bool anew = scenario.fusion && directory.lacks_nodes();
+  if (!force && content == Content::same_run_unfinished && !anew)
     start.first_tick = resume_tick(scenario, directory);
   if (start.first_tick > 0) {
     std::printf(
@@ -37,7 +39,7 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
         directory.path().c_str(), long(start.first_tick), long(scenario.last_tick()));
     std::fflush(stdout);
   } else if (content != Content::no_run || !found.empty()) {
-    directory.clear();
+    directory.clear(force);
   }
   mark_begun(directory);
   return start;

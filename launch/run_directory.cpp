@@ -76,9 +76,11 @@ void remove_file(const fs::path& path) {
   if (failure) throw Error(path.string() + ": can't be removed: " + failure.message());
 }
 
-/// Removes the products in a directory, then the directory if it is empty and not a link.
+/// Removes the products in a directory that is not one of a run, then the directory if it is empty
+/// and not a link.
 void remove_products(const fs::path& directory, bool (*is_product)(const std::string& name)) {
   std::error_code ignored;
+  if (path_exists(directory / "run.json")) return;  // of a run there
   std::vector<fs::path> products;
   for (const auto& entry : fs::directory_iterator(directory, ignored))
     if (is_product(entry.path().filename().string())) products.push_back(entry.path());
@@ -150,21 +152,26 @@ void RunDirectory::check_sensor_directories() const {
                         " can't write there; --out writes elsewhere");
 }
 
-void RunDirectory::clear() {
+bool RunDirectory::lacks_nodes() const {
+  return path_exists(file("run.json")) &&
+         read_text_file(file("run.json")).find("\"dropped\":[\"") != std::string::npos;
+}
+
+void RunDirectory::clear(bool others) {
   write_file_whole(file("run.json"), clearing);
   for (const char* name : run_files) remove_file(file(name));
   std::error_code ignored;
   std::vector<fs::path> sensors;
-  for (const auto& entry : fs::directory_iterator(path_, ignored))
-    if (!entry.is_symlink(ignored) && is_sensor_directory(entry.path()))
-      sensors.push_back(entry.path());
+  if (others)
+    for (const auto& entry : fs::directory_iterator(path_, ignored))
+      if (!entry.is_symlink(ignored) && is_sensor_directory(entry.path()))
+        sensors.push_back(entry.path());
   for (const auto& sensor : scenario_.sensors) sensors.emplace_back(file(sensor.name));
-  for (const auto& sensor : sensors)
-    if (!path_exists(sensor / "run.json")) remove_products(sensor, is_product_of_sensor);
+  for (const auto& sensor : sensors) remove_products(sensor, is_product_of_sensor);
   remove_products(file(fusion_node), [](const std::string& name) {
     return name == "inputs.journal" || name == "tracks.jsonl" || name == "tasks.jsonl";
   });
-  remove_products(file("positions"), is_ephemeris);
+  if (others || scenario_.output.positions_oem) remove_products(file("positions"), is_ephemeris);
 }
 
 void RunDirectory::merge_lines() const {

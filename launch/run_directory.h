@@ -32,9 +32,13 @@ class RunDirectory {
   /// Throws `ConfigError` if a sensor's directory is that of a run, which has a run.json.
   void check_sensor_directories() const;
 
-  /// Removes products of an earlier run, this or another, by their names. Other files stay, and so
-  /// do the directories that hold them. Leaves a run.json that says so.
-  void clear();
+  /// Whether the run went on without nodes that were lost, by its run.json.
+  bool lacks_nodes() const;
+
+  /// Removes products of an earlier run by their names; with `others` also those of sensors that
+  /// the scenario lacks. Other files stay, and so do the directories that hold them and those with
+  /// a run.json of their own. Leaves a run.json that says so.
+  void clear(bool others);
 
   /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by
   /// (time, sensor, index). An incomplete last line is left out.

@@ -71,9 +71,11 @@ class Loader {
         add(object, 0.0);
       }
     if (const auto& fusion = scenario_.fusion)
-      for (std::size_t k = 0; k < fusion->not_in_catalogue.size(); ++k)
+      for (std::size_t k = 0; k < fusion->not_in_catalogue.size(); ++k) {
+        const auto& where = fusion->not_in_catalogue_where;  // empty if no file has them
         require_found(population_.roster.objects, fusion->not_in_catalogue[k],
-                      fusion->not_in_catalogue_where[k], "");
+                      k < where.size() ? where[k] : "fusion.not_in_catalogue", "");
+      }
     if (stale_ > 0)
       note(std::to_string(stale_) + " of " + std::to_string(population_.elements.size()) +
            " objects have elements more than 30 days from the start of the run");

@@ -31,8 +31,9 @@ void remove_found(const UnknownFacts& unknown, FrameNotes& notes) {
                                     {FrameFact::focal_length, "focal length: "},
                                     {FrameFact::zero_point, "zero point: "}})
     if (!unknown.has(fact))
-      std::erase_if(notes.missing,
-                    [&](const std::string& text) { return text.starts_with(begin); });
+      std::erase_if(notes.missing, [&, begin = begin](const std::string& text) {
+        return text.starts_with(begin);
+      });
 }
 
 /// Notes what the catalogue would need; the last one is found by a solution.

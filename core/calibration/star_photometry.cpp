@@ -131,8 +131,8 @@ std::vector<Candidate> candidates_of(const Frame& frame, const PlateSolution& pl
   return out;
 }
 
-/// Light below which sources were cut off, because there were more than are listed; 0: they were
-/// not.
+/// Light below which sources were cut off, because there were more than are listed; negligible if
+/// they were not.
 double cut_e(std::span<const PlateSource> sources) {
   std::vector<double> fluxes;
   for (const PlateSource& s : sources)

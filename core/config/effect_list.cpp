@@ -330,8 +330,9 @@ std::vector<std::string> effects_in_digest(const EffectSet& effects) {
   const auto add = [&](const EffectFacts& effect) {
     const int level = effects.level(effect);
     const bool graded = level > 0 && level != effect.unplanned() && effect.levels.size() > 2;
+    const bool least = level == 0 && effects.is_forced(effect);
     names.push_back(std::string(effect.name) +
-                    (graded ? ":" + std::string(effect.levels[std::size_t(level)]) : "") +
+                    (graded || least ? ":" + std::string(effect.levels[std::size_t(level)]) : "") +
                     (effects.is_forced(effect) ? "!" : ""));
   };
   const auto named = [](std::string_view name) {

@@ -56,7 +56,7 @@ bool of_time(std::string_view key, const UnknownFacts& unknown) {
 
 bool of_light(std::string_view key, const UnknownFacts& unknown) {
   if (key == "magnitude" || key == "limiting_magnitude")
-    return lacks(unknown, {zero_point, extinction, exposure});
+    return lacks(unknown, {zero_point, exposure});  // which may hold the air, without an extinction
   if (key == "magnitude_sigma" || key == "zero_point_mag") return lacks(unknown, {zero_point});
   if (key == "background_e") return lacks(unknown, {bias});
   if (key == "band") return lacks(unknown, {band});

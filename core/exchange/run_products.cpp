@@ -38,7 +38,9 @@ RunSensor sensor_of(const JsonRecord& record, const Ellipsoid& ellipsoid) {
   sensor.rows = camera.rows;
   sensor.psf_fwhm_px = *camera.sigma_px * fwhm_per_sigma;
   const auto effects = record.texts("effects");
-  sensor.light_time = std::ranges::find(effects, "light_time") != effects.end();
+  sensor.light_time = std::ranges::any_of(effects, [](const std::string& effect) {
+    return effect == "light_time" || effect == "light_time!";  // by itself, or switched on
+  });
   return sensor;
 }
 

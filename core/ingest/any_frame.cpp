@@ -80,16 +80,18 @@ std::vector<double> values_of(FitsImage& image, int first, int together, const S
 }
 
 /// A stated value must be one, and a keyword that nothing reads is noted.
-void check_stated(const StandardCards& cards, const FrameChoice& choice, const std::string& name) {
+void check_stated(const StandardCards& of_planes, const StandardCards& cards,
+                  const FrameChoice& choice, const std::string& name) {
   for (const auto& [key, value] : choice.stated) {
     cards.require_accepted(key, name);
-    if (!cards.was_read(key)) cards.missing(key + ": is stated, but nothing reads it here");
+    if (!cards.was_read(key) && !of_planes.was_read(key))
+      cards.missing(key + ": is stated, but nothing reads it here");
   }
 }
 
-Frame foreign_frame(FitsImage& image, const FitsValues& values, const PlanePlace& place,
-                    int together, const FrameChoice& choice, const std::string& name,
-                    Threads& threads) {
+Frame foreign_frame(FitsImage& image, const FitsValues& values, const StandardCards& of_planes,
+                    const PlanePlace& place, int together, const FrameChoice& choice,
+                    const std::string& name, Threads& threads) {
   Frame frame;
   const StandardCards cards(values, frame.notes);
   const auto pixels = values_of(image, place.plane, together, cards, name);
@@ -99,7 +101,7 @@ Frame foreign_frame(FitsImage& image, const FitsValues& values, const PlanePlace
   const CountSource source{pixels, map, together};
   set_detector(cards, source, frame.counts, threads, frame.header);
   set_star_images(cards, frame.counts, threads, frame.header);
-  check_stated(cards, choice, name);
+  check_stated(of_planes, cards, choice, name);
   return frame;
 }
 
@@ -115,10 +117,11 @@ void decode_frames(std::string_view bytes, const std::string& name, const FrameC
   FitsValues values = image.values();
   for (const auto& [key, value] : choice.stated) values[key] = value;
   FrameNotes unused;
-  const Planes planes = planes_of(image, StandardCards(values, unused), choice, name);
+  const StandardCards of_planes(values, unused);
+  const Planes planes = planes_of(image, of_planes, choice, name);
   for (int plane = planes.first; plane <= planes.last; plane += planes.together)
-    take(foreign_frame(image, values, {plane, image.planes() / planes.together}, planes.together,
-                       choice, name, threads));
+    take(foreign_frame(image, values, of_planes, {plane, image.planes() / planes.together},
+                       planes.together, choice, name, threads));
 }
 
 void read_frames_of(const std::string& path, const FrameChoice& choice, Threads& threads,

@@ -160,7 +160,7 @@ ScoredFrame frame_of_report(const FrameReport& report, const UnknownFacts& unkno
 /// Truth that a frame's detections cannot be compared with is not scored.
 void leave_unknown(const std::string& file, const UnknownFacts& unknown,
                    std::vector<TrueSource>& truths) {
-  const bool no_light = unknown.has(FrameFact::zero_point) || unknown.has(FrameFact::extinction);
+  const bool no_light = unknown.has(FrameFact::zero_point);
   const bool no_place = unknown.has(FrameFact::pointing) || unknown.has(FrameFact::site);
   for (TrueSource& t : truths) {
     if (t.frame != file) continue;

@@ -132,7 +132,7 @@ StarReading parse_star_csv(std::string_view text, const std::string& name) {
              StarRecord star{.id = id_of(row, id, count)};
              if (row.value(id).value_or(star.id) != star.id)
                return "id: must be a whole number from 0 to 4294967295";
-             if (!ids.insert(star.id).second) return "id: another star has it";
+             if (ids.contains(star.id)) return "id: another star has it";
              if (row.value(pm_ra).has_value() != row.value(pm_dec).has_value())
                return "pm_ra_mas_per_yr, pm_dec_mas_per_yr: must be given together";
              star.ra_rad = *row.value(ra) * deg;
@@ -147,6 +147,7 @@ StarReading parse_star_csv(std::string_view text, const std::string& name) {
              const double from = row.value(epoch).value_or(2000.0);
              if (!(from > 1500 && from < 2500)) return "epoch_jyear: must be in (1500, 2500)";
              const char* why = append_star(reading.catalogue, star);
+             if (!why) ids.insert(star.id);
              StarCatalogue& c = reading.catalogue;
              if (!why && from != c.epoch_jyear) move_star(c, c.size() - 1, from, c.epoch_jyear);
              return why;

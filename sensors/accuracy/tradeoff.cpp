@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/quantile.h"
 #include "core/config/effect_list.h"
@@ -60,6 +61,8 @@ struct StatedErrors {
   ErrorBound of(const EffectFacts& effect, int level) const {
     const auto found =
         std::ranges::find(effects, &effect, [](const PlannableEffect& e) { return e.facts; });
+    if (found == effects.end())
+      throw Error(std::string(effect.name) + ": is no effect of this sensor's plans");
     return found->error(level, facts);
   }
 };

@@ -9,6 +9,7 @@
 
 #include "bench/simulated_frame.h"
 #include "core/base/error.h"
+#include "core/detection/unknown_fields.h"
 #include "core/frames/quaternion.h"
 #include "core/sky/airmass.h"
 #include "core/sky/star_cache.h"
@@ -214,6 +215,7 @@ TEST(SolveFrame, ExtinctionThatIsNotFittedStaysUnknown) {
   const FrameHeader solved = solved_header(h, s);
   EXPECT_TRUE(solved.unknown.has(FrameFact::extinction));
   EXPECT_FALSE(solved.unknown.has(FrameFact::zero_point));
+  EXPECT_FALSE(is_unknown("magnitude", solved.unknown));
 }
 
 TEST(SolveFrame, SolvesAMirroredFrame) {

@@ -139,6 +139,13 @@ TEST_F(ScenarioFile, SeeingIsInTheDigest) {
   EXPECT_EQ(texts.size(), 3u);
 }
 
+TEST_F(ScenarioFile, EffectsThatAreSwitchedAreInTheDigest) {
+  std::set<std::string> texts{physics_json(load(good))};
+  for (const char* effects : {"stars: off", "stars: on", "light_time: off", "light_time: on"})
+    texts.insert(physics_json(load(good + "effects: {" + effects + "}\n")));
+  EXPECT_EQ(texts.size(), 5u);
+}
+
 // 10 min of cubic put objects kilometres away: 2.5 km against ticks of 5 s.
 TEST_F(ScenarioFile, RefusesTicksBetweenWhichObjectsAreMetresOff) {
   const std::string own_object =

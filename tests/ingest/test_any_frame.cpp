@@ -17,6 +17,7 @@ namespace {
 using namespace test;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string error_of(const std::string& bytes, const FrameChoice& choice = {}) {
   try {
@@ -192,6 +193,8 @@ TEST(AnyFrame, FactsCanBeStated) {
   EXPECT_THAT(setting.notes.missing, Contains(HasSubstr("got 139")));
   const Frame misspelt = read_one(image_of(scene.counts, {}), {.stated = {{"EXPTME", "4"}}});
   EXPECT_THAT(misspelt.notes.missing, Contains("EXPTME: is stated, but nothing reads it here"));
+  const Frame colours = read_one(image_of(scene.counts, {}), {.stated = {{"CTYPE3", "RGB"}}});
+  EXPECT_THAT(colours.notes.missing, Not(Contains(HasSubstr("CTYPE3"))));
   EXPECT_THAT(error_of(encoded(image_of(scene.counts, {})), {.stated = {{"EXPTIME", "abc"}}}),
               HasSubstr("EXPTIME: is not a finite number, got abc"));
 }

@@ -91,7 +91,7 @@ TEST_F(RunDirectories, ClearingRemovesProductsAndNothingElse) {
 
   RunDirectory run(directory, scenario, "digest");
   EXPECT_EQ(run.content(), RunDirectory::Content::another_run);
-  run.clear();
+  run.clear(true);
   EXPECT_EQ(run.content(), RunDirectory::Content::half_cleared);
   std::size_t left = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
@@ -101,6 +101,26 @@ TEST_F(RunDirectories, ClearingRemovesProductsAndNothingElse) {
     EXPECT_TRUE(std::filesystem::exists(directory + "/" + where + "/" + name)) << where << name;
   EXPECT_FALSE(std::filesystem::exists(directory + "/old"));
   EXPECT_FALSE(std::filesystem::exists(directory + "/fusion-node"));
+}
+
+// Repeated unasked: what the run of this scenario wrote, and nothing of sensors that it lacks.
+TEST_F(RunDirectories, ClearingItsOwnLeavesWhatOthersHave) {
+  const std::string old = "{\"sensor\":\"old\",\"frame\":1,\"start_ns\":0}\n";
+  write("old", "frames.jsonl", old);
+  write("positions", "ISS-25544.oem", "1");
+  write("fusion-node", "run.json", "{}");
+  write("fusion-node", "tracks.jsonl", "1");
+  write("alpha", "frame-000001.fits", "1");
+  write("", "run.json", R"({"status":"begun","dropped":[],"digest":"digest"})");
+  RunDirectory run(directory, scenario, "digest");
+  EXPECT_FALSE(run.lacks_nodes());
+  run.clear(false);
+  EXPECT_FALSE(std::filesystem::exists(directory + "/alpha"));
+  for (const char* name :
+       {"/old/frames.jsonl", "/positions/ISS-25544.oem", "/fusion-node/tracks.jsonl"})
+    EXPECT_TRUE(std::filesystem::exists(directory + name)) << name;
+  write("", "run.json", R"({"status":"incomplete","dropped":["alpha"],"digest":"digest"})");
+  EXPECT_TRUE(run.lacks_nodes());
 }
 
 TEST_F(RunDirectories, FilesWithoutARunAreInTheWay) {

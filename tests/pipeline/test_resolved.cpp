@@ -298,20 +298,25 @@ double light_over_mean(Stage& stage, double period_s, double least_deg, double m
          (mean * times.seconds() * Throughput(view).electrons_per_photon_m2());
 }
 
+/// A file of this process, above the directories of its scenes.
+std::string mirror_file(const std::string& ending, const std::string& directory) {
+  return directory + "/mirror-" + std::to_string(getpid()) + ending;
+}
+
 struct Mirror {
   std::string size_m, focal_length_m;
 };
 const Mirror mirrors[] = {{"4, 2", "1"}, {"0.1, 0.1", "0.05"}};  // resolved, a point
 
 std::string mirror_scene(const Mirror& mirror, const std::string& attitude, double exposure_s) {
-  std::ofstream(std::filesystem::path(testing::TempDir()) / "mirror.yaml")
+  std::ofstream(mirror_file(".yaml", testing::TempDir()))
       << "materials:\n  mirror: {model: phong, diffuse: 0, specular: 0.9, exponent: 20000}\n";
   std::string text =
       text_of({.objects = shape_at("mirror", lit_sight(), 1e4, 0, 0,
                                    "    attitude: " + attitude +
                                        "\n    geometry: {model: plate, size_m: [" + mirror.size_m +
-                                       "], front: mirror, back: mirror, materials: "
-                                       "../mirror.yaml}\n"),
+                                       "], front: mirror, back: mirror, materials: " +
+                                       mirror_file(".yaml", "..") + "}\n"),
                .pointing = "{target: mirror}",
                .optics = "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, "
                          "focal_length_m: " +
@@ -346,7 +351,7 @@ TEST(Resolved, AGlintOfAMirrorThatTurnsManyTimesIsNotLost) {
 TEST(Resolved, AGlintBeforeTheObjectComesToRestIsNotLost) {
   const Vec<Gcrs> normal = glint_normal(), axis = unit(cross(Vec<Gcrs>{0, 0, 1}, normal));
   const double glint_rad = angle_rad(Vec<Gcrs>{0, 0, 1}, normal);
-  std::ofstream table(std::filesystem::path(testing::TempDir()) / "mirror.csv");
+  std::ofstream table(mirror_file(".csv", testing::TempDir()));
   table << "time_s,w,x,y,z\n" << std::setprecision(15);
   for (const auto& [time_s, from_deg] :
        {std::pair{0, -20.0}, {1, -20.0}, {2, 20.0}, {3, 20.0}, {12, 20.0}}) {
@@ -356,7 +361,7 @@ TEST(Resolved, AGlintBeforeTheObjectComesToRestIsNotLost) {
   }
   table.close();
   for (const Mirror& mirror : mirrors) {
-    Stage stage(mirror_scene(mirror, "{table: ../mirror.csv}", 4.5));
+    Stage stage(mirror_scene(mirror, "{table: " + mirror_file(".csv", "..") + "}", 4.5));
     EXPECT_NEAR(light_over_mean(stage, 4.5, 40, 60), 1.0, 0.02) << mirror.size_m;
   }
 }

@@ -22,4 +22,6 @@ def utc_after(start: datetime.datetime, microseconds: int) -> datetime.datetime:
                 return time.replace(fold=1)
         elif start >= day > time:
             time += _SECOND
+            if time >= day:
+                return (time - _SECOND).replace(fold=1)
     return time
