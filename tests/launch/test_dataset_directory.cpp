@@ -184,6 +184,16 @@ TEST_F(DatasetDirectories, EndWithTheLastTask) {
   EXPECT_EQ(names(), complete);
 }
 
+// As a process that was stopped while it removed a data set by force leaves it.
+TEST_F(DatasetDirectories, AreNotCompleteWithoutAnArchive) {
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({}, false));
+  make(dataset);
+  fs::remove(directory + "/dataset-000001.tar");
+  EXPECT_EQ(dataset.finish(), 1u);
+  EXPECT_FALSE(fs::exists(directory + "/dataset.json"));
+}
+
 TEST_F(DatasetDirectories, RefusePartsOfAnotherDataSet) {
   DatasetDirectory dataset = open();
   ASSERT_TRUE(dataset.begin({}, false));
