@@ -89,7 +89,7 @@ std::string summary_text(const RunDirectory& directory, const Scenario& scenario
       formatted("%s in %.1f s (%s)", outcome.status.c_str(), outcome.wall_s, outcome.how.c_str());
   if (outcome.status != "failed" && !outcome.reason.empty())
     text += ": " + printable(outcome.reason, 400);
-  text += "\n";
+  text += '\n';
   return text + what_to_open(directory, scenario);
 }
 
