@@ -14,8 +14,9 @@ inline constexpr const char* truth_csv_help =
     "end1_x_px,end1_y_px,end2_x_px,end2_y_px,magnitude,signal_e,ra_deg,dec_deg in any order; "
     "fields may be empty. Pixels: 0 is the centre of the first pixel (FITS counts it 1: subtract "
     "1), y along rows as stored. x_px, y_px: centroid of the light in the frame; ends: of the "
-    "trail, also outside. signal_e: electrons in the frame. ra_deg, dec_deg: ICRS, astrometric, "
-    "mid exposure";
+    "trail, also outside. signal_e: electrons in the frame. ra_deg, dec_deg: direction at mid "
+    "exposure as corrected_ra_deg, corrected_dec_deg of detections, without aberration and "
+    "refraction, not as ra_deg, dec_deg by the WCS";
 
 /// Reads such a table; `files`: the names of frames. Throws `ConfigError`
 /// "FILE:LINE: COLUMN: reason".

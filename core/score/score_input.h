@@ -18,7 +18,7 @@ struct TrueSource {
   std::optional<PixelPosition> light;     // centroid of its light in the frame; empty: it has none
   std::optional<double> signal_e;         // of that light
   std::optional<double> magnitude;        // as lit
-  std::optional<double> ra_rad, dec_rad;  // ICRS, astrometric, at mid exposure
+  std::optional<double> ra_rad, dec_rad;  // as `Detection::corrected_ra_rad`, at mid exposure
   std::optional<SimTime> start_time, end_time;
   bool whole = true;      // all of the trail is in the frame, and lit
   bool resolved = false;  // not a point moved along the trail
