@@ -71,6 +71,7 @@ void check_directory(const std::string& out) {
 
 /// Throws `ConfigError` if a process of a launch has no key.
 void check_keys(const Scenario& scenario, const CheckOptions& options) {
+  if (options.hosts > 0) check_agent_keys(scenario, options.hosts, options.keys);
   std::vector<std::string> names = nodes_of(scenario);
   names.insert(names.end(), {"time-master", broker_name, operator_name});
   for (int host = 0; host < options.hosts; ++host) names.push_back(agent_name(scenario, host));
@@ -78,7 +79,6 @@ void check_keys(const Scenario& scenario, const CheckOptions& options) {
     read_key(options.keys, name);
     public_key_of(options.keys, name);
   }
-  if (options.hosts > 0) check_agent_keys(scenario, options.hosts, options.keys);
 }
 
 /// Constructs each sensor as the run does, to find errors.

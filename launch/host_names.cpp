@@ -24,11 +24,22 @@ std::vector<std::string> sensors_on(const Scenario& scenario, int host, int host
   return names;
 }
 
+namespace {
+
+std::string public_key_of_agent(const std::string& keys, const std::string& agent, int hosts) try {
+  return public_key_of(keys, agent);
+} catch (const ConfigError& error) {
+  throw ConfigError(std::string(error.what()) + "; dmise keygen --scenario --hosts " +
+                    std::to_string(hosts) + " makes it");
+}
+
+}  // namespace
+
 void check_agent_keys(const Scenario& scenario, int hosts, const std::string& keys) {
   const auto allowed = read_allowed(keys);
   for (int host = 0; host < hosts; ++host) {
     const std::string agent = agent_name(scenario, host);
-    const std::string key = public_key_of(keys, agent);
+    const std::string key = public_key_of_agent(keys, agent, hosts);
     for (const auto& sensor : sensors_on(scenario, host, hosts))
       if (!allowed.at(key).nodes.contains(sensor))
         throw ConfigError(keys + ": the key of " + agent + " may not speak for " + sensor +
