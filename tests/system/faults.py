@@ -99,7 +99,9 @@ class Field:
     def _resume(self, schedule, out):
         """A run that was cut short goes on, and gives the same bytes."""
         scenario = write_scene(self.directory, schedule.policy, 0)
-        with Run(self.binary, "launch", scenario, "--out", out) as run:
+        # Without a launch there is no run.json, and nobody knows whose products there are.
+        force = () if (out / "run.json").exists() else ("--force",)
+        with Run(self.binary, "launch", scenario, "--out", out, *force) as run:
             code, _ = run.finish(PATIENCE_S)
             if code != 0:
                 raise Failure(f"taken up again it ends with code {code}: {run.stderr[-500:]}")
