@@ -48,16 +48,15 @@ void check_directory(const std::string& out) {
   std::vector<fs::path> made;  // the innermost first
   fs::path at = fs::absolute(out).lexically_normal();
   if (!at.has_filename()) at = at.parent_path();
-  for (;
-       fs::symlink_status(at, ignored).type() == fs::file_type::not_found && at.has_relative_path();
-       at = at.parent_path())
-    made.push_back(at);
+  const auto is_there = [&] {
+    return fs::symlink_status(at, ignored).type() != fs::file_type::not_found;
+  };
+  for (; !is_there() && at.has_relative_path(); at = at.parent_path()) made.push_back(at);
   if (!fs::is_directory(at, ignored))
     throw ConfigError("--out: " + at.string() + " is not a directory, got " + out);
   struct Removal {
     const std::vector<fs::path>& made;
     ~Removal() {
-      std::error_code ignored;
       for (const fs::path& directory : made) rmdir(directory.c_str());
     }
   } removal{made};

@@ -17,6 +17,8 @@
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/dataset/tar.h"
+#include "launch/commands.h"
+#include "nodes/runtime/process/event.h"
 #include "sensors/dataset/frame_labels.h"
 
 namespace dmise {
@@ -30,13 +32,6 @@ constexpr std::string_view partial_ending = ".partial", partial_plan = "plan.jso
 constexpr std::int64_t directory_byte = 0;  // shared by tasks, alone to begin and to remove
 constexpr std::int64_t finish_byte = 1;     // to write coco.json and dataset.json
 constexpr std::int64_t task_byte = 1;       // plus the number of the task, from 1
-
-/// Removes a file. Throws `Error` if it is there and stays.
-void remove_file(const std::string& path) {
-  std::error_code failure;
-  fs::remove(path, failure);
-  if (failure) throw Error(path + ": can't be removed: " + failure.message());
-}
 
 bool is_directory(const std::string& path) {
   std::error_code ignored;
@@ -314,8 +309,10 @@ std::size_t DatasetDirectory::finish() {
   std::size_t missing = 0;
   for (std::size_t shard = 0; shard < plan_.shards(); ++shard) missing += !has_shard(shard);
   if (missing > 0) return missing;
-  while (!lock_->take(finish_byte, FileLock::Use::alone))  // another process finishes it
+  while (!lock_->take(finish_byte, FileLock::Use::alone)) {  // another process finishes it
+    if (stop_signal().is_set()) throw ExitWith{130};
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   if (content() != Content::same_complete) {
     std::string text = head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
     for (std::size_t shard = 0; shard < plan_.shards(); ++shard)

@@ -70,12 +70,6 @@ bool is_sensor_directory(const fs::path& directory) {
          line.starts_with("{\"sensor\":\"" + directory.filename().string() + "\",\"frame\":");
 }
 
-void remove_file(const fs::path& path) {
-  std::error_code failure;
-  fs::remove(path, failure);
-  if (failure) throw Error(path.string() + ": can't be removed: " + failure.message());
-}
-
 /// Removes the products in a directory that is not one of a run, then the directory if it is empty
 /// and not a link.
 void remove_products(const fs::path& directory, bool (*is_product)(const std::string& name)) {
@@ -84,7 +78,7 @@ void remove_products(const fs::path& directory, bool (*is_product)(const std::st
   std::vector<fs::path> products;
   for (const auto& entry : fs::directory_iterator(directory, ignored))
     if (is_product(entry.path().filename().string())) products.push_back(entry.path());
-  for (const auto& product : products) remove_file(product);
+  for (const auto& product : products) remove_file(product.string());
   if (!fs::is_symlink(directory, ignored)) fs::remove(directory, ignored);
 }
 

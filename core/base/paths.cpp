@@ -20,4 +20,10 @@ void make_directories(const std::string& path, const char* option) {
   throw Error(reason);
 }
 
+void remove_file(const std::string& path) {
+  std::error_code failure;
+  std::filesystem::remove(path, failure);
+  if (failure) throw Error(path + ": can't be removed: " + failure.message());
+}
+
 }  // namespace dmise

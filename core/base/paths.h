@@ -10,4 +10,8 @@ bool path_exists(const std::string& path);
 /// user gave it by an option of the command line, `ConfigError` "OPTION: PATH: ...".
 void make_directories(const std::string& path, const char* option = nullptr);
 
+/// Removes a file or an empty directory, if it is there. Throws `Error` "PATH: can't be removed:
+/// reason".
+void remove_file(const std::string& path);
+
 }  // namespace dmise

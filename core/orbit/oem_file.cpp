@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/paths.h"
 #include "core/base/printable_ascii.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
@@ -42,9 +43,7 @@ void OemFile::begin() {
   if (file_) std::fclose(file_);
   file_ = nullptr;
   last_utc_.clear();
-  std::error_code error;
-  std::filesystem::remove(path_, error);
-  if (error) throw Error(path_ + ": can't be removed: " + error.message());
+  remove_file(path_);
 }
 
 void OemFile::keep_before(const std::string& utc) {

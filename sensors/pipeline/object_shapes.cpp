@@ -143,7 +143,7 @@ double turn_rad(const View& view, std::size_t object, double begin, double end) 
   double of_panel = 0.0;
   auto before = gcrs_from_panel(begin);
   for (int i = 1; i <= steps; ++i) {
-    const auto after = gcrs_from_panel(i == int(wanted) ? end : begin + i * step);
+    const auto after = gcrs_from_panel(double(i) == wanted ? end : begin + i * step);
     if (!before || !after) return turn;
     of_panel += rotation_angle_rad(*before * after->inverse());
     before = after;

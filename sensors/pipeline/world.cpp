@@ -163,6 +163,7 @@ double World::turn_rad(std::size_t i, SimTime start, SimTime end) const {
   double turn = 0.0;
   for (std::size_t tick = 1; k && tick < states_.size(); ++tick) {
     const ObjectStates &before = *states_[tick - 1], &after = *states_[tick];
+    if (before.time >= end) break;
     const SimTime from = std::max(start, before.time), to = std::min(end, after.time);
     if (!(from < to)) continue;
     const auto a = before.attitude(*k), b = after.attitude(*k);

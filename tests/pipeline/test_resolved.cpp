@@ -1,7 +1,6 @@
-#include <iomanip>
+#include <cstdio>
 
 #include "core/sky/shadow.h"
-#include "sensors/pipeline/throughput.h"
 #include "sensors/render/resolution.h"
 #include "tests/pipeline/shape_scenes.h"
 
@@ -215,37 +214,6 @@ TEST(Resolved, ThePenumbraDimsAShapeAndAPointAlike) {
   }
 }
 
-// A panel of 200 pixels that turns once a second: its glint of 10 ms is in the light.
-TEST(Resolved, AGlintShorterThanAPoseIsNotLost) {
-  const Sight sight = lit_sight();
-  Stage stage(text_of({.objects = shape_at("panel", sight, 1e4, 0, 0,
-                                           "    attitude: {spinning: {axis: [0.1, 1, 0], rate_rpm: "
-                                           "60}}\n    geometry: {model: plate, size_m: [4, 2], "
-                                           "front: silicon-cell, back: silicon-cell}\n"),
-                       .pointing = "{target: panel}",
-                       .optics = "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, "
-                                 "focal_length_m: 1, aperture_m: 0.02}"}));
-  const auto& sensor = stage.scenario.sensors.at(0);
-  const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
-  const FrameTimes times = frame_times(sensor, 1);
-  const View view(sensor, times, stage.world);
-  const std::size_t panel = object_index(stage.world.roster(), "panel", "test");
-  const ObjectShape& shape = *shapes.of(stage.world.roster().objects[panel].catalogue_number);
-  constexpr int steps = 20000;
-  double mean = 0;
-  for (int i = 0; i < steps; ++i) {
-    const SimTime t = times.at((i + 0.5) / steps);
-    mean += shape_photons_per_s_m2(shapes, shape,
-                                   *shape_pose(view, panel, t, view.observer(t).position_m), 1.0) /
-            steps;
-  }
-  const auto frame = stage.frame();
-  ASSERT_TRUE(truth_named(frame, "panel").resolved);
-  EXPECT_NEAR(truth_named(frame, "panel").rendered_signal_e /
-                  (mean * times.seconds() * Throughput(view).electrons_per_photon_m2()),
-              1.0, 0.02);
-}
-
 // A sheet of 1 mm from its edge, and a boom of 2 mm that no sample meets.
 TEST(Resolved, AnObjectThinnerThanTheSamplesHasItsLight) {
   const Sight sight = lit_sight();
@@ -271,99 +239,6 @@ TEST(Resolved, AnObjectThinnerThanTheSamplesHasItsLight) {
                   std::max(5e-3, 3.0 / range_m))
           << size << " at " << range_m << " m";
     }
-}
-
-/// The light of a frame of a mirror that turns, over the mean of its light at 20,000 instants of
-/// the first `period_s`, with which it repeats itself. Its turn over the exposure is from
-/// `least_deg` to `most_deg`.
-double light_over_mean(Stage& stage, double period_s, double least_deg, double most_deg) {
-  const auto& sensor = stage.scenario.sensors.at(0);
-  const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
-  const FrameTimes times = frame_times(sensor, 1);
-  const View view(sensor, times, stage.world);
-  const std::size_t mirror = object_index(stage.world.roster(), "mirror", "test");
-  const ObjectShape& shape = *shapes.of(stage.world.roster().objects[mirror].catalogue_number);
-  EXPECT_GE(turn_rad(view, mirror) / deg, least_deg);
-  EXPECT_LE(turn_rad(view, mirror) / deg, most_deg);
-  constexpr int steps = 20000;
-  double mean = 0;
-  for (int i = 0; i < steps; ++i) {
-    const SimTime t = times.at((i + 0.5) / steps * period_s / times.seconds());
-    mean += shape_photons_per_s_m2(shapes, shape,
-                                   *shape_pose(view, mirror, t, view.observer(t).position_m), 1.0) /
-            steps;
-  }
-  EXPECT_GT(mean, 0.0);
-  return truth_named(stage.frame(), "mirror").rendered_signal_e /
-         (mean * times.seconds() * Throughput(view).electrons_per_photon_m2());
-}
-
-/// A file of this process, above the directories of its scenes.
-std::string mirror_file(const std::string& ending, const std::string& directory) {
-  return directory + "/mirror-" + std::to_string(getpid()) + ending;
-}
-
-struct Mirror {
-  std::string size_m, focal_length_m;
-};
-const Mirror mirrors[] = {{"4, 2", "1"}, {"0.1, 0.1", "0.05"}};  // resolved, a point
-
-std::string mirror_scene(const Mirror& mirror, const std::string& attitude, double exposure_s) {
-  std::ofstream(mirror_file(".yaml", testing::TempDir()))
-      << "materials:\n  mirror: {model: phong, diffuse: 0, specular: 0.9, exponent: 20000}\n";
-  std::string text =
-      text_of({.objects = shape_at("mirror", lit_sight(), 1e4, 0, 0,
-                                   "    attitude: " + attitude +
-                                       "\n    geometry: {model: plate, size_m: [" + mirror.size_m +
-                                       "], front: mirror, back: mirror, materials: " +
-                                       mirror_file(".yaml", "..") + "}\n"),
-               .pointing = "{target: mirror}",
-               .optics = "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, "
-                         "focal_length_m: " +
-                         mirror.focal_length_m + ", aperture_m: 0.002}",
-               .exposure_s = exposure_s});
-  return text.replace(text.find("tick_s: 5"), 9, "tick_s: 1");
-}
-
-/// The direction of a normal that sends sunlight to the camera.
-Vec<Gcrs> glint_normal() {
-  const Stage any(text_of({.objects = "", .pointing = "zenith"}));
-  return unit(unit(any.world.environment({0}).sun_m) - lit_sight().line);
-}
-
-// Half a degree of a mirror's turn sends its light to the camera: at 60 rpm for 1.4 ms, in
-// exposures of many turns, at rates that repeat themselves in 10 ms and in each arc.
-TEST(Resolved, AGlintOfAMirrorThatTurnsManyTimesIsNotLost) {
-  const Vec<Gcrs> axis = unit(cross(Vec<Gcrs>{0, 0, 1}, glint_normal()));
-  for (const auto& [rpm, exposure_s] : {std::pair{60.0, 4.0}, {6000.0, 1.0}, {3840.0, 2.0}})
-    for (const Mirror& mirror : mirrors) {
-      char spin[256];
-      std::snprintf(spin, sizeof spin, "{spinning: {axis: [%.12f, %.12f, %.12f], rate_rpm: %g}}",
-                    axis.x, axis.y, axis.z, rpm);
-      Stage stage(mirror_scene(mirror, spin, exposure_s));
-      const double turn_deg = 6 * rpm * exposure_s;
-      EXPECT_NEAR(light_over_mean(stage, 60 / rpm, 0.9999 * turn_deg, 1.0001 * turn_deg), 1.0, 0.05)
-          << rpm << " rpm, " << exposure_s << " s, " << mirror.size_m;
-    }
-}
-
-// Turned by 40 deg within a second and at rest before the exposure ends.
-TEST(Resolved, AGlintBeforeTheObjectComesToRestIsNotLost) {
-  const Vec<Gcrs> normal = glint_normal(), axis = unit(cross(Vec<Gcrs>{0, 0, 1}, normal));
-  const double glint_rad = angle_rad(Vec<Gcrs>{0, 0, 1}, normal);
-  std::ofstream table(mirror_file(".csv", testing::TempDir()));
-  table << "time_s,w,x,y,z\n" << std::setprecision(15);
-  for (const auto& [time_s, from_deg] :
-       {std::pair{0, -20.0}, {1, -20.0}, {2, 20.0}, {3, 20.0}, {12, 20.0}}) {
-    const double half_rad = (glint_rad + from_deg * deg) / 2, s = std::sin(half_rad);
-    table << time_s << ',' << std::cos(half_rad) << ',' << s * axis.x << ',' << s * axis.y << ','
-          << s * axis.z << '\n';
-  }
-  table.close();
-  for (const Mirror& mirror : mirrors) {
-    Stage stage(mirror_scene(mirror, "{table: " + mirror_file(".csv", "..") + "}", 4.5));
-    EXPECT_NEAR(light_over_mean(stage, 4.5, 40, 60), 1.0, 0.02) << mirror.size_m;
-  }
 }
 
 // Half of it lies beside the frame: half of its light, no more.

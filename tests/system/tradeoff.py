@@ -7,9 +7,8 @@ stopped without changing what it had measured.
 import csv
 import json
 import subprocess
-import time
 
-from harness import check, main
+from harness import check, main, wait_until
 
 SCENARIO = """simulation: {start: 2018-01-21T00:15:00Z, duration_s: 10, tick_s: 5, seed: 1}
 stars: {catalogue: kstars}
@@ -85,9 +84,7 @@ def test(binary, directory):
     head = table.read_text().splitlines()[0]
     table.write_text(table.read_text().replace(head, head.replace("DMISE ", "DMISE 0.")))
     one = subprocess.Popen([binary, "tradeoff", scenario, "--out", out], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    deadline = time.monotonic() + 60
-    while not (out / ".run-lock").exists() and one.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.01)
+    wait_until(lambda: (out / ".run-lock").exists() or one.poll() is not None, "the lock of the directory")
     refusal = tradeoff(expect=2).stderr
     check("is in use by" in refusal and refusal.count("\n") == 1, f"a second one is refused while the first works: {refusal}")
     check(one.wait() == 0 and table.read_text().splitlines()[0] == head, "rows of another version are measured again")
