@@ -141,8 +141,10 @@ TEST(SolveFrame, StartsFromADirectionWithoutARoll) {
 }
 
 /// The sky above a site by a fisheye lens of 150 deg, whose pixels of 14 arcmin are crowded: the
-/// stars through air that dims them and makes them scintillate by 4 % at the zenith.
-Frame draw_all_sky(double ra_rad, double dec_rad, double extinction, unsigned seed) {
+/// stars through air that dims them and makes them scintillate by 4 % at the zenith. `lens`: its
+/// relative illumination by the angle from the axis [deg].
+Frame draw_all_sky(double ra_rad, double dec_rad, double extinction, unsigned seed,
+                   const MonotoneCubic& lens = {}) {
   constexpr int wide = 640, high = 480;
   constexpr double scintillation2 = 0.002, true_zero_point_mag = 12.0;
   FrameHeader h =
@@ -151,6 +153,7 @@ Frame draw_all_sky(double ra_rad, double dec_rad, double extinction, unsigned se
   h.wcs.projection = Projection::equidistant;
   h.zero_point_mag = 0.0;  // not known
   h.extinction_mag_per_airmass = extinction;
+  h.illumination = lens;
   h.psf_fwhm_px = 1.7;
   const Vec<Gcrs> zenith = from_spherical<Gcrs>(ra_rad, dec_rad);
   h.sensor_position_m = zenith * 6.378e6;
@@ -173,7 +176,8 @@ Frame draw_all_sky(double ra_rad, double dec_rad, double extinction, unsigned se
       continue;
     const double x = airmass(std::asin(dot(s.direction, zenith)));
     const double variance = std::log1p(scintillation2 * x * x * x);
-    const double factor = std::exp(std::sqrt(variance) * normal(random) - 0.5 * variance);
+    const double light = lens.empty() ? 1.0 : lens(angle_rad(s.direction, model.axis()) / deg);
+    const double factor = light * std::exp(std::sqrt(variance) * normal(random) - 0.5 * variance);
     frame.add_point(at->x_px, at->y_px,
                     h.exposure_s * factor *
                         std::pow(10, 0.4 * (true_zero_point_mag - s.v_mag - extinction * x)));
@@ -202,6 +206,22 @@ TEST(SolveFrame, ZeroPointsOfAllSkyFramesAreRight) {
                   3 * free.zero_point->sigma(2));
       EXPECT_FALSE(solved_header(frame.header, free).unknown.has(FrameFact::extinction));
     }
+}
+
+// A lens that loses six tenths of the light at 75 deg from its axis.
+TEST(SolveFrame, ZeroPointsAreWithoutTheLensThatTheHeaderHas) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  Threads one(1);
+  Frame frame =
+      draw_all_sky(0.3, 0.59, 0.17, 5, MonotoneCubic({0, 30, 60, 90}, {1, 0.9, 0.6, 0.2}));
+  const FrameSolution s = solve_frame(frame, stars(), {}, one);
+  ASSERT_TRUE(s.zero_point);
+  EXPECT_NEAR(s.zero_point->zero_point_mag, 12.0, 0.03);
+  EXPECT_NEAR(s.zero_point->zero_point_mag, 12.0, 3 * s.zero_point->sigma(0));
+  frame.header.illumination = {};
+  const FrameSolution lens = solve_frame(frame, stars(), {}, one);
+  ASSERT_TRUE(lens.zero_point);
+  EXPECT_GT(std::abs(lens.zero_point->zero_point_mag - 12.0), 0.1);  // taken for extinction
 }
 
 // Of 14 deg near the zenith: the zero point then holds the air.
