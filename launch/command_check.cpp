@@ -48,9 +48,8 @@ void check_directory(const std::string& out) {
   std::vector<fs::path> made;  // the innermost first
   fs::path at = fs::absolute(out).lexically_normal();
   if (!at.has_filename()) at = at.parent_path();
-  const auto is_there = [&] {
-    return fs::symlink_status(at, ignored).type() != fs::file_type::not_found;
-  };
+  // What cannot be looked at, as a name that is too long, is not there: making it says why.
+  const auto is_there = [&] { return fs::exists(fs::symlink_status(at, ignored)); };
   for (; !is_there() && at.has_relative_path(); at = at.parent_path()) made.push_back(at);
   if (!fs::is_directory(at, ignored))
     throw ConfigError("--out: " + at.string() + " is not a directory, got " + out);
