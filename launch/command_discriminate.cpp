@@ -50,7 +50,8 @@ std::map<std::string, std::string> known_of(const std::vector<std::string>& word
     const auto at = word.rfind('=');
     if (at == std::string::npos || at == 0 || at + 1 == word.size())
       throw ConfigError("--is: must be OBJECT=MATERIAL, got " + printable(word));
-    known[word.substr(0, at)] = word.substr(at + 1);
+    if (!known.emplace(word.substr(0, at), word.substr(at + 1)).second)
+      throw ConfigError("--is: " + printable(word.substr(0, at)) + " is there twice");
   }
   return known;
 }

@@ -57,20 +57,31 @@ ChartAxis logarithmic_axis(const char* label, double least, double most) {
           .ticks = logarithmic_ticks(least, most)};
 }
 
+bool was_left_out(const RunSpectra& spectra, const std::string& object) {
+  const std::string named = " " + object + ": ";
+  return std::any_of(spectra.left_out.begin(), spectra.left_out.end(),
+                     [&](const std::string& why) { return why.find(named) != std::string::npos; });
+}
+
 }  // namespace
 
 RunDiscrimination discriminate(RunSpectra given, const std::vector<MaterialSignature>& materials,
                                const std::map<std::string, std::string>& known) {
   std::vector<std::string> names;
   for (const auto& m : materials) names.push_back(m.name);
-  for (const auto& [object, material] : known)
+  const std::vector<std::string> objects = objects_of(given);
+  for (const auto& [object, material] : known) {
+    if (std::find(objects.begin(), objects.end(), object) == objects.end() &&
+        !was_left_out(given, object))
+      throw Error(object + ": no such object in the run, said to be " + material);
     if (std::find(names.begin(), names.end(), material) == names.end())
       throw Error(object + ": no such material among those compared: " + material);
+  }
   RunDiscrimination run{
       .spectra = std::move(given), .materials = materials, .confusion = ConfusionMatrix(names)};
   const RunSpectra& spectra = run.spectra;
   const std::size_t bands = spectra.sensors.size();
-  for (const std::string& name : objects_of(spectra)) {
+  for (const std::string& name : objects) {
     ObjectSignature object{.object = name,
                            .summed = summed_light(spectra, name),
                            .scatter = std::vector<double>(bands - 1),

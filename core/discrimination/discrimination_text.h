@@ -30,7 +30,8 @@ struct RunDiscrimination {
   ConfusionMatrix confusion;
 };
 
-/// `known`: object to material. Throws `Error` for a known material that is not among `materials`.
+/// `known`: object to material. Throws `Error` for a known object that was neither
+/// measured nor left out, and for a known material that is not among `materials`.
 RunDiscrimination discriminate(RunSpectra spectra, const std::vector<MaterialSignature>& materials,
                                const std::map<std::string, std::string>& known);
 

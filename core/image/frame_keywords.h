@@ -69,7 +69,7 @@ void visit_wcs(Visitor& v, const Projection& lens, Wcs& wcs) {
   v.number("CD1_2", wcs.cd_deg[1], "[deg/px]");
   v.number("CD2_1", wcs.cd_deg[2], "[deg/px]");
   v.number("CD2_2", wcs.cd_deg[3], "[deg/px]");
-  v.number_constant("LONPOLE", 180.0, "[deg] also where the reference is a celestial pole");
+  v.number_constant("LONPOLE", 180.0, "[deg] also at a celestial pole");
   v.constant("RADESYS", "ICRS", "places are astrometric: as in a star catalogue");
   v.sip(wcs);
   visit_refraction(v, lens, wcs);
@@ -204,8 +204,7 @@ void visit(Visitor& v, FrameHeader& h) {
   }
   if (v.present("PRESSURE", h.air.has_value())) {
     if (!h.air) h.air.emplace();
-    v.number("PRESSURE", h.air->pressure_hpa,
-             "[hPa] of the air that refracts, 0: refraction is off");
+    v.number("PRESSURE", h.air->pressure_hpa, "[hPa] of the air; 0: refraction is off");
     v.number("AIRTEMP", h.air->temperature_c, "[deg C]");
     v.number("HUMIDITY", h.air->humidity, "relative, 0 to 1");
   }

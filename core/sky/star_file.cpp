@@ -32,7 +32,8 @@ Reader reader_of(std::string_view text) {
     if (line.size() > 50 && parse_real(columns(line, 1, 9)) && parse_real(columns(line, 11, 19)) &&
         (line[10] == '+' || line[10] == '-'))
       return parse_kstars;
-    if (line.size() > 106 && parse_real(columns(line, 1, 4)) && parse_real(columns(line, 103, 107)))
+    if (line.size() > 106 && parse_real(columns(line, 1, 4)) &&
+        (line[83] == '+' || line[83] == '-') && parse_real(columns(line, 103, 107)))
       return parse_bsc5;
   }
   return nullptr;

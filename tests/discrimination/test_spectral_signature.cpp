@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/rng.h"
+#include "core/discrimination/discrimination_text.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
 
@@ -60,6 +61,22 @@ TEST(FluxRatio, HasNoBiasAtASignalOfTwelveSigma) {
 TEST(FluxRatio, RefusesADenominatorWithoutLight) {
   EXPECT_THROW(flux_ratio({1.0, 0.1}, {0.0, 0.1}), Error);
   EXPECT_THROW(flux_ratio({1.0, 0.1}, {-0.2, 0.1}), Error);
+}
+
+// What is said of an object that the run lacks, as by a slip of the pen, is no silent nothing.
+TEST(Discriminate, RefusesWhatIsSaidOfAnObjectThatTheRunLacks) {
+  const Band blue{.name = "blue", .centre_m = 0.5e-6, .width_m = 0.05e-6};
+  const Band red{.name = "red", .centre_m = 0.8e-6, .width_m = 0.05e-6};
+  const std::vector<MaterialSignature> materials = {{.name = "paint", .reflectance = {0.5, 0.5}}};
+  RunSpectra spectra{.sensors = {{.name = "b", .band = blue}, {.name = "r", .band = red}},
+                     .samples = {{.object = "panel",
+                                  .frame = 1,
+                                  .bands = {{.light = {1.0, 0.1}}, {.light = {1.0, 0.1}}}}},
+                     .left_out = {"b/2 boom: is at the edge"}};
+  EXPECT_EQ(
+      discriminate(spectra, materials, {{"panel", "paint"}, {"boom", "paint"}}).objects.size(), 1u);
+  EXPECT_THROW(discriminate(spectra, materials, {{"panle", "paint"}}), Error);
+  EXPECT_THROW(discriminate(spectra, materials, {{"panel", "pain"}}), Error);
 }
 
 }  // namespace

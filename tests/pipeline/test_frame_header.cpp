@@ -251,6 +251,19 @@ TEST(FrameHeader, TheLongestNameOfASensorAndAnyNameOfAFilterAreWritten) {
   EXPECT_EQ(h.band.name, "? " + std::string(29, '\''));
 }
 
+// A card that ends at its last column may have lost the end of its comment.
+TEST(FrameHeader, CommentsAreWhole) {
+  for (const std::string& place : {atlanta, orbit}) {
+    test::Stage stage(scenario(place, "{target: \"990000002\"}"));
+    const std::string bytes = read_back(stage).bytes;
+    for (std::size_t at = 0; bytes.compare(at, 4, "END ") != 0; at += 80) {
+      const std::string card = bytes.substr(at, 80);
+      const std::size_t slash = card.rfind(" / ");
+      EXPECT_TRUE(slash == std::string::npos || card.back() == ' ') << card;
+    }
+  }
+}
+
 // What others write in these keywords is taken where it is meant as ours, else left.
 TEST(FrameHeader, KeywordsOfFilesFromElsewhereMayBeAnything) {
   test::Stage stage(scenario(atlanta, "{target: \"990000002\"}"));

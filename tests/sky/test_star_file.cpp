@@ -142,6 +142,13 @@ TEST(StarFile, NumbersOfStarsAreTheirOwn) {
                           "my.csv:8: pm_ra_mas_per_yr, pm_dec_mas_per_yr: must be given together"));
 }
 
+// Numbers in the columns that the Bright Star Catalogue has its own in.
+TEST(StarFile, ATableWithBlanksIsNotTheBrightStarCatalogue) {
+  std::string row(120, ' ');
+  row.replace(0, 4, "  11").replace(102, 5, " 3.21").replace(60, 9, "12.345678");
+  EXPECT_THROW(parse_stars("# %ECSV 1.0\n" + row + "\n", "table.ecsv"), ConfigError);
+}
+
 TEST(StarFile, WhatIsNoCatalogueIsRefusedWithItsName) {
   for (const char* text : {"", "hello\n", "ra_deg,dec_deg\n1,2\n", "ra_deg,dec_deg,mag_v\n"}) {
     try {
