@@ -187,6 +187,20 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
               false);
 }
 
+/// Brings the field across the columns to `field_rad`, from the focal length of a lens whose
+/// distortion is radial alone, and leaves that if it is right.
+void fit_focal_length(Optics& optics, double field_rad) {
+  const auto too_wide = [&] {
+    return field_across_rad(optics, optics.columns / 2.0, 0.0) - field_rad;
+  };
+  if (std::abs(too_wide()) <= 1e-9 * field_rad) return;
+  double least = std::log(optics.focal_length_m / 64), most = std::log(optics.focal_length_m * 64);
+  for (int halving = 0; halving < 60; ++halving) {
+    optics.focal_length_m = std::exp((least + most) / 2);
+    (too_wide() > 0.0 ? least : most) = (least + most) / 2;
+  }
+}
+
 }  // namespace
 
 const Section& optics_section() {
@@ -285,6 +299,7 @@ Optics read_optics(const YamlValue& value) {
     if (const auto fold = optics.projection.fold_rad(); fold && half_rad >= *fold)
       fail_fold(value, *fold);
     optics.focal_length_m = width_m / 2 / optics.projection.height(half_rad);
+    fit_focal_length(optics, field_deg * deg);
   }
   if (const auto fold = fold_in_frame_rad(optics)) fail_fold(value, *fold);
   optics.aperture_m = map.number("aperture_m");

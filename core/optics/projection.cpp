@@ -58,6 +58,12 @@ std::optional<double> rim_angle_rad(const Optics& o) {
 
 double half_diagonal_rad(const Optics& o) { return rim_angle_rad(o).value_or(pi); }
 
+double field_across_rad(const Optics& o, double x_px, double y_px) {
+  const double x = x_px / o.focal_length_px(), y = y_px / o.focal_length_px();
+  return o.projection.axis_angle_rad(x, y).value_or(pi) +
+         o.projection.axis_angle_rad(-x, -y).value_or(pi);
+}
+
 std::optional<double> fold_in_frame_rad(const Optics& o) {
   const auto fold = o.projection.fold_rad();
   return fold && !rim_angle_rad(o) ? fold : std::nullopt;

@@ -26,6 +26,11 @@ std::optional<Vec<CameraFrame>> unproject(const Optics& optics, PixelPosition pi
 /// direction is imaged. Relative error of using the centre: about (pixel angle)^2.
 double pixel_solid_angle_sr(const Optics& optics, PixelPosition pixel);
 
+/// Field along a line through the centre, from (-x, -y) to (x, y) pixels from it [rad, 0..2 pi]:
+/// the sum of its ends' angles from the boresight. An end where no direction is imaged counts as
+/// pi.
+double field_across_rad(const Optics& optics, double x_px, double y_px);
+
 /// Angle from the boresight of the farthest point of the frame [rad, 0..pi].
 double half_diagonal_rad(const Optics& optics);
 

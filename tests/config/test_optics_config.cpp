@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/base/error.h"
+#include "core/base/formatted.h"
+#include "core/base/units.h"
 #include "core/config/camera_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/sky_config.h"
@@ -78,6 +82,31 @@ TEST(OpticsConfig, RefusesAFisheyeThatTurnsBackInTheFrame) {
   EXPECT_NE(refusal("projection: brown_conrady\ndistortion: {k4: 1}\n")
                 .find("distortion.k4: goes with other keys or values than those given"),
             std::string::npos);
+}
+
+// By hand: the gnomonic place u on the row through the centre is imaged at u + k1 u^3 + 3 p2 u^2.
+TEST(OpticsConfig, TheFieldAcrossTheColumnsIsThatOfTheWholeDistortion) {
+  for (const double p2 : {-0.05, 0.05, 0.002, 0.0})
+    for (const double k1 : {0.0, 0.1})
+      for (const double field_deg : {0.01, 30.0, 100.0}) {
+        const Optics o = read_optics(
+            YamlValue::parse("columns: 1000\nrows: 2\npixel_pitch_m: 5.0e-6\naperture_m: 1.0e-5\n"
+                             "projection: brown_conrady\nfield_of_view_deg: " +
+                                 formatted("%g\ndistortion: {k1: %g, p2: %g}\n", field_deg, k1, p2),
+                             "camera.yaml"));
+        double sum_rad = 0.0;
+        for (const double side : {-1.0, 1.0}) {
+          double inside = 0.0, outside = 2.0;  // of |u|
+          for (int halving = 0; halving < 60; ++halving) {
+            const double middle = 0.5 * (inside + outside), u = side * middle;
+            const double image = u + k1 * u * u * u + 3 * p2 * u * u;
+            const bool beyond = side * image * o.focal_length_m > 500 * o.pixel_pitch_m;
+            (beyond ? outside : inside) = middle;
+          }
+          sum_rad += std::atan(inside);
+        }
+        EXPECT_NEAR(sum_rad / deg, field_deg, 1e-8 * field_deg) << p2 << " " << k1;
+      }
 }
 
 // By hand: r - 0.3 r^3 turns back at r = 1 / sqrt(0.9), 46.51 deg.
