@@ -42,7 +42,9 @@ std::string numeric_address(const std::string& address) {
   const auto end = end_of_host(address);
   if (end == std::string::npos || end <= tcp.size()) return address;
   const std::string host = address.substr(tcp.size(), end - tcp.size());
-  if (host == "*" || host[0] == '[' || if_nametoindex(host.c_str())) return address;
+  if (host[0] == '[')
+    throw Error(address + ": the network is one of IPv4; give an IPv4 address or a name");
+  if (host == "*" || if_nametoindex(host.c_str())) return address;
   const addrinfo ask{.ai_family = AF_INET, .ai_socktype = SOCK_STREAM};
   addrinfo* found = nullptr;
   if (const int code = getaddrinfo(host.c_str(), nullptr, &ask, &found))

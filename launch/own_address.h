@@ -4,7 +4,8 @@
 namespace dmise {
 
 /// "tcp://HOST:PORT" with HOST resolved to an IPv4 address; other transports and names of
-/// interfaces are unchanged. Throws `Error` "ADDRESS: reason" if the name cannot be resolved.
+/// interfaces are unchanged. Throws `Error` "ADDRESS: reason" if the name cannot be resolved
+/// or is a number of IPv6.
 std::string numeric_address(const std::string& address);
 
 /// "tcp://A.B.C.D:0" with the address of this machine (or container) on the route to the numeric
