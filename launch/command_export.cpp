@@ -10,6 +10,7 @@
 #include "core/base/nearest_name.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/object_names.h"
@@ -98,8 +99,9 @@ std::vector<MeanElements> elements_of(const RunProducts& run, const ExportOption
   return all;
 }
 
-void write(const ExportedFile& file, const fs::path& path) {
+void write(const ExportedFile& file, fs::path path) {
   if (path.has_parent_path()) make_directories(path.parent_path(), "--out");
+  path = file_to_write("--out", path.string());
   if (file.copy_of.empty()) return write_file_whole(path.string(), file.content);
   const std::string partial = WholeFile::partial_of(path.string());
   std::error_code error;
@@ -115,6 +117,7 @@ fs::path export_kind(const ExportOptions& options, const ExportFormat& format, P
     throw ConfigError(std::string("--out: ") + format.name + " is written to a " +
                       (is_file ? "file, got the directory " : "directory, got the file ") +
                       printable(options.out));
+  if (is_file && !options.out.empty()) file_to_write("--out", options.out);
   Progress progress;
   const RunProducts run =
       read_products(options.run,

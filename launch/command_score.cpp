@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/whole_file.h"
 #include "core/score/foreign_frames.h"
 #include "core/score/run_files.h"
@@ -42,8 +43,9 @@ ScoreInput input_of(const ScoreOptions& options) {
 }
 
 void run_score(const ScoreOptions& options) {
+  const std::string csv = options.csv.empty() ? "" : file_to_write("--csv", options.csv);
   const Score result = score(input_of(options), options.settings);
-  if (!options.csv.empty()) write_file_whole(options.csv, score_csv(result));
+  if (!csv.empty()) write_file_whole(csv, score_csv(result));
   if (!options.plots.empty()) {
     make_directories(options.plots, "--plots");
     write_file_whole(options.plots + "/detection.svg", chart_svg(detection_chart(result)));

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 #include "core/base/units.h"
 #include "core/calibration/solve_frame.h"
 #include "core/ingest/star_trails.h"
@@ -67,19 +68,22 @@ void print_text(const FrameSolution& s) {
               z.extinction_fitted ? "" : " (not fitted)");
 }
 
-/// Refuses a file to write that would not be what its name says, or is the frame itself.
-void check_out(const SolveOptions& o) {
-  if (o.out.empty()) return;
+/// Where to write; empty: nowhere. Refuses a file that would not be what its name says, or is the
+/// frame itself.
+std::string checked_out(const SolveOptions& o) {
+  if (o.out.empty()) return "";
   for (const char* ending : {".gz", ".fz", ".bz2"})
     if (o.out.ends_with(ending))
       throw ConfigError("--out: an uncompressed file is written, got " + o.out);
   std::error_code none;
   if (std::filesystem::equivalent(o.frame, o.out, none))
     throw ConfigError("--out: must not be the frame itself, got " + o.out);
+  return file_to_write("--out", o.out);
 }
 
 void solve(const SolveOptions& o) {
-  check_out(o);
+  if (o.catalogue == "none") throw ConfigError("--catalogue: solving takes stars, got none");
+  const std::string out = checked_out(o);
   Threads threads(o.threads);
   const Frame frame = read_any_frame(o.frame, *o.choice, threads);
   print_notes(o.frame, frame.notes);
@@ -95,11 +99,11 @@ void solve(const SolveOptions& o) {
   } catch (const Error& e) {
     throw Error(o.frame + ": " + e.what());
   }
-  if (!o.out.empty()) {
+  if (!out.empty()) {
     FrameHeader header = solved_header(frame.header, solution);
     if (frame.header.unknown.has(FrameFact::pointing))
       set_trails_of_solved(frame.counts, threads, header);
-    write_frame(o.out, frame.counts, header);
+    write_frame(out, frame.counts, header);
   }
   if (o.json)
     std::printf("%s\n", to_json(solution, frame.header, frame.notes).c_str());

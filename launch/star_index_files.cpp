@@ -17,6 +17,7 @@
 #include "core/base/mapped_file.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/user_directories.h"
 #include "core/config/search_path.h"
@@ -128,12 +129,13 @@ std::size_t index_stars(const std::string& from, const std::string& to) try {
   std::error_code missing;
   if (fs::equivalent(from, to, missing))
     throw ConfigError("--out: must be another file than the catalogue, got " + printable(to));
+  const std::string index = file_to_write("--out", to);
   const CatalogueBytes bytes(from);
   StarReading reading = parse_stars(bytes.text, from);
   for (const std::string& problem : reading.problems) print_note(problem + " (left out)");
   const StarSource source = source_of(bytes.text);
   const StarMap map = star_map_of(std::move(reading.catalogue), std::move(reading.problems));
-  write_star_map(to, map, source);
+  write_star_map(index, map, source);
   return map.stars.size();
 } catch (const ConfigError&) {
   throw;

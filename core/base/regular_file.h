@@ -8,4 +8,10 @@ namespace dmise {
 /// devices, which may never end, and files of /proc or /sys. Never waits for a writer.
 int open_regular_file(const std::string& path);
 
+/// Where a file is written that a user names by an option of the command line: the end of symbolic
+/// links, which need not be there yet. Throws `ConfigError` "OPTION: reason, got PATH" for what a
+/// file put in its place would destroy: FIFOs, devices, and files of /proc or /sys; and for
+/// directories.
+std::string file_to_write(const char* option, const std::string& path);
+
 }  // namespace dmise

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace dmise {
 namespace {
@@ -92,6 +93,31 @@ TEST_F(TextFile, LeavesTheOldFileWhenTheNewOneCannotBeWritten) {
   fs::create_directory(path("a.partial"));  // stands in the way
   EXPECT_THROW(write_file_whole(path("a"), "new"), Error);
   EXPECT_EQ(read_text_file(path("a")), "old");
+}
+
+TEST_F(TextFile, WhatIsWrittenIsTheEndOfLinksAndNoFifoDeviceOrDirectory) {
+  const auto refusal = [](const std::string& to) -> std::string {
+    try {
+      file_to_write("--out", to);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(file_to_write("--out", path("new")), path("new"));
+  fs::create_directory(directory / "there");
+  fs::create_symlink("there/file", directory / "relative");
+  fs::create_symlink("relative", directory / "twice");
+  EXPECT_EQ(file_to_write("--out", path("twice")), path("there/file"));
+  fs::create_symlink("/dev/null", directory / "device");
+  mkfifo(path("fifo").c_str(), 0600);
+  fs::create_symlink("loop", directory / "loop");
+  EXPECT_EQ(refusal(path("device")),
+            "--out: is a device, not a regular file, got " + path("device"));
+  EXPECT_EQ(refusal(path("fifo")), "--out: is a FIFO, not a regular file, got " + path("fifo"));
+  EXPECT_EQ(refusal(path("there")), "--out: is a directory, got " + path("there"));
+  EXPECT_NE(refusal(path("loop")), "");
+  EXPECT_NE(refusal("/proc/self/comm"), "");
 }
 
 }  // namespace
