@@ -34,7 +34,10 @@ std::vector<TradeoffRow> known_rows(const std::string& path, const std::string& 
   if (!path_exists(path)) return rows;
   std::istringstream lines(read_text_file(path, 1u << 26));
   std::string line;
-  if (!std::getline(lines, line) || line != head) return rows;
+  if (!std::getline(lines, line) || line != head) {
+    print_note(path + ": is replaced: it is of another measurement, " + printable(line));
+    return rows;
+  }
   while (std::getline(lines, line))
     if (auto row = row_of_csv(line)) rows.push_back(std::move(*row));
   return rows;
@@ -52,11 +55,11 @@ void tradeoff(const TradeoffOptions& options) {
                            " frame " + std::to_string(options.frame) + " repeats " +
                            std::to_string(options.repeats);
   const std::string csv = options.out + "/tradeoff.csv";
-  auto rows = known_rows(csv, head);
   Progress progress;
   Threads one(1);
   const SceneFrames scene(scenario, sensor, options.frame, one);
   const Tradeoff trade(scene, options.repeats);
+  auto rows = known_rows(csv, head);
   const auto save = [&] {
     std::string text = head + "\n" + tradeoff_csv_header() + "\n";
     for (const auto& row : rows) text += csv_line(row) + "\n";

@@ -8,12 +8,14 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
 #include "core/pictures/picture_file.h"
+#include "core/sky/sun_moon.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
 #include "launch/common_options.h"
@@ -35,7 +37,7 @@ struct VisibleOptions {
   double step_s = 10.0;
   bool csv = false, jsonl = false, sunlit = false, dark = false, print_only = false;
   std::optional<double> night_deg;
-  std::size_t rows = 40;
+  int rows = 40;
   int threads = 1;
 };
 
@@ -59,6 +61,11 @@ TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, cons
   if (from.seconds() + duration_s + options.step_s > longest_s)
     throw ConfigError("--from: the span ends more than 291 years after the scenario's start, got " +
                       printable(options.from));
+  for (const SimTime end : {from, from + sim_seconds(duration_s + options.step_s)})
+    if (!ephemeris_covers(clock.tt(end)))
+      throw ConfigError("--from: the span must be within " + std::to_string(ephemeris_first_year) +
+                        " to " + std::to_string(ephemeris_last_year) +
+                        ", the years of the ephemeris, got " + format_utc(clock.utc(end), 0));
   return covering_grid(from, sim_seconds(duration_s), sim_seconds(options.step_s));
 }
 
@@ -68,6 +75,16 @@ bool wanted(const Pass& pass, const VisibleOptions& options) {
   if (options.dark && pass.lit_s >= length_s - 2 * event_error_s) return false;
   return !options.night_deg || !pass.top.sun_elevation_rad ||
          pass.least_sun_elevation_rad < *options.night_deg * deg;
+}
+
+/// What is said of the passes that are kept.
+std::string filters_of(const VisibleOptions& options, const PassList& list) {
+  std::string text;
+  if (options.sunlit) text += ", sunlit for a part";
+  if (options.dark) text += ", dark for a part";
+  if (options.night_deg && std::holds_alternative<SiteConfig>(list.sensor.place))
+    text += formatted(", the Sun below %g deg for a part", *options.night_deg);
+  return text;
 }
 
 /// Prints the first few notes; `where`: end of the line about the others.
@@ -116,7 +133,7 @@ std::string counts_csv(const Sightings& found, const TimeGrid& grid, const Clock
 
 void write_products(const std::string& directory, const PassList& list, const std::string& counts,
                     const Chart& chart) {
-  make_directories(directory);
+  make_directories(directory, "--out");
   write_file_whole(directory + "/passes.csv", pass_csv(list));
   write_file_whole(directory + "/passes.jsonl", pass_jsonl(list));
   write_file_whole(directory + "/counts.csv", counts);
@@ -161,11 +178,8 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
     const std::size_t length = from.size() - (whole_s ? 5 : 1);
     std::printf("%s%s, %sZ to %sZ: %zu passes of %zu objects%s\n", first ? "" : "\n",
                 sensor.name.c_str(), from.substr(0, length).c_str(), to.substr(0, length).c_str(),
-                passes.size(), objects.size(),
-                options.sunlit ? ", sunlit for a part"
-                : options.dark ? ", dark for a part"
-                               : "");
-    std::fputs(pass_table(list, options.rows).c_str(), stdout);
+                passes.size(), objects.size(), filters_of(options, list).c_str());
+    std::fputs(pass_table(list, options.rows, !options.print_only).c_str(), stdout);
   }
   if (options.print_only) return;
   RangeFigureOptions figure{.dark = options.dark};
@@ -182,6 +196,9 @@ void visible(const VisibleOptions& options) {
   const Scenario scenario = load_scenario(options.scenario);
   std::vector<const SensorConfig*> sensors;
   for (const std::string& name : options.sensors) sensors.push_back(&sensor_named(scenario, name));
+  for (auto name = options.sensors.begin(); name != options.sensors.end(); ++name)
+    if (std::find(options.sensors.begin(), name, *name) != name)
+      throw ConfigError("--sensor: " + printable(*name) + " is there twice");
   if (sensors.empty())
     for (const SensorConfig& sensor : scenario.sensors) sensors.push_back(&sensor);
   const Clock clock = make_clock(scenario);
@@ -227,13 +244,15 @@ void add_visible_command(CLI::App& app) {
                  "only passes that are partly in the Earth's shadow; the figure shows that part")
       ->excludes(sunlit);
   command
-      ->add_option(
-          "--night", o->night_deg,
-          "only while the Sun is below this elevation at the site [deg]; -6 without a value")
+      ->add_option("--night", o->night_deg,
+                   "only passes during which, for a part, the Sun is below this elevation at the "
+                   "site [deg]; "
+                   "-6 without a value; passes in orbit are all kept")
       ->expected(0, 1)
       ->default_str("-6")
       ->check(number_between(-90.0, 90.0));
   command->add_option("--rows", o->rows, "number of passes in the table; 0: all")
+      ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
   auto* csv = command->add_flag("--csv", o->csv, "print CSV instead of the table");
   command->add_flag("--jsonl", o->jsonl, "print one JSON object per line instead of the table")

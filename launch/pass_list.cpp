@@ -1,6 +1,8 @@
 #include "launch/pass_list.h"
 
+#include <algorithm>
 #include <functional>
+#include <span>
 
 #include "core/base/formatted.h"
 #include "core/base/json.h"
@@ -76,12 +78,17 @@ std::string of_day(const Clock& clock, SimTime t) {
   return format_utc(clock.utc(t), 1).substr(11, 10);
 }
 
-/// "all", "no", or the sunlit interval.
+/// Whether the object is in shadow between its first and its last sunlit instant.
+bool has_shadow_between(const Pass& p) {
+  return p.lit_from && p.lit_s < (*p.lit_to - *p.lit_from).seconds() - 2 * event_error_s;
+}
+
+/// "all", "no", or the first and last sunlit instant, with '~' where a shadow lies between.
 std::string light(const PassList& list, const Pass& p) {
   const double length_s = (p.set.time - p.rise.time).seconds();
   if (!p.lit_from) return "no";
   if (p.lit_s >= length_s - 2 * event_error_s) return "all";
-  return of_day(list.clock, *p.lit_from).substr(0, 8) + "-" +
+  return of_day(list.clock, *p.lit_from).substr(0, 8) + (has_shadow_between(p) ? "~" : "-") +
          of_day(list.clock, *p.lit_to).substr(0, 8);
 }
 
@@ -103,7 +110,7 @@ const char* orbit_class(const MeanElements& elements) {
   return "far";
 }
 
-std::string pass_table(const PassList& list, std::size_t rows) {
+std::string pass_table(const PassList& list, int rows, bool has_csv) {
   if (list.passes.empty()) return {};
   const bool ground = std::holds_alternative<SiteConfig>(list.sensor.place);
   std::string text =
@@ -112,9 +119,11 @@ std::string pass_table(const PassList& list, std::size_t rows) {
             "         highest    azimuth  nearest     rate      sunlit             Sun\n"
           : "   number  name                      orbit  rise (UTC)               nearest     set"
             "         nearest     rate      sunlit\n";
-  std::size_t rows_done = 0;
-  for (const Pass& p : list.passes) {
-    if (rows && rows_done++ == rows) break;
+  const std::size_t shown =
+      rows > 0 ? std::min(std::size_t(rows), list.passes.size()) : list.passes.size();
+  bool shadows_between = false;
+  for (const Pass& p : std::span(list.passes).first(shown)) {
+    shadows_between |= has_shadow_between(p);
     const MeanElements& e = list.elements[p.object];
     text += formatted("%9u  %-24.24s  %-5s %c%s  %s  %s%c", e.catalogue_number, e.name.c_str(),
                       orbit_class(e), p.open_start ? '<' : ' ',
@@ -130,9 +139,10 @@ std::string pass_table(const PassList& list, std::size_t rows) {
     if (p.excluded) text += "  excluded";
     text += '\n';
   }
-  if (rows && list.passes.size() > rows)
-    text += "  ... and " + std::to_string(list.passes.size() - rows) +
-            " more (--rows 0 shows all; passes.csv has them)\n";
+  if (shadows_between) text += "  '~' in sunlit: a shadow lies between\n";
+  if (list.passes.size() > shown)
+    text += "  ... and " + std::to_string(list.passes.size() - shown) +
+            " more (--rows 0 shows all" + (has_csv ? "; passes.csv has them" : "") + ")\n";
   return text;
 }
 

@@ -16,8 +16,8 @@ struct PassList {
   bool tells_excluded = false;      // in a separate column
 };
 
-/// Table for display: at most `rows` passes, 0 for all.
-std::string pass_table(const PassList& list, std::size_t rows);
+/// Table for display: at most `rows` passes, 0 for all. `has_csv`: passes.csv has the rest.
+std::string pass_table(const PassList& list, int rows, bool has_csv);
 
 /// A header line, then one per pass: UTC to 10 ms, degrees, kilometres; empty for missing values
 /// (no azimuth in orbit, no sunlit part).

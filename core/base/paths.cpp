@@ -15,7 +15,8 @@ void make_directories(const std::string& path, const char* option) {
   std::error_code failure;
   std::filesystem::create_directories(path, failure);
   if (!failure) return;
-  const std::string reason = path + ": can't be made: " + failure.message();
+  const std::string reason =
+      (path.empty() ? "\"\"" : path) + ": can't be made: " + failure.message();
   if (option) throw ConfigError(std::string(option) + ": " + reason);
   throw Error(reason);
 }

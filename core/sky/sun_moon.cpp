@@ -3,9 +3,9 @@
 #include <erfa.h>
 
 #include <cmath>
-#include <string>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -50,8 +50,8 @@ Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt) {
 
 SolarSystem solar_system(const Tt& tt) {
   if (!ephemeris_covers(tt))
-    throw Error("the Sun's ephemeris covers 1900 to 2100, got " +
-                std::to_string(2000 + julian_years_since_j2000(tt)));
+    throw Error(formatted("the Sun's ephemeris covers 1900 to 2100, got %.2f as a year",
+                          2000 + julian_years_since_j2000(tt)));
 
   double heliocentric[2][3], barycentric[2][3];
   eraEpv00(tt.jd1, tt.jd2, heliocentric, barycentric);

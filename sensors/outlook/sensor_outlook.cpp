@@ -131,10 +131,12 @@ std::vector<std::string> catalogue_warnings(const Scenario& scenario,
   const double middle = middle_of(age_days);
   if (middle < old_after_days) return {};
   const std::string where = scenario.objects.empty() ? scenario.path : scenario.objects[0].where;
-  return {where +
-          formatted(": half of the %zu element sets are %.0f days or more from the start of the "
-                    "run: positions are off by kilometres to tens of kilometres",
-                    population.elements.size(), middle)};
+  const char* error = middle < 60.0    ? "positions are off by kilometres to tens of kilometres"
+                      : middle < 365.0 ? "positions are off by hundreds of kilometres"
+                                       : "places along the orbits are not known";
+  return {where + formatted(": half of the %zu element sets are %.0f days or more from the start "
+                            "of the run: %s",
+                            population.elements.size(), middle, error)};
 }
 
 }  // namespace dmise

@@ -127,8 +127,10 @@ std::vector<CandidateSite> candidate_sites(const std::vector<SensorConfig>& sens
     if (!site) continue;
     const auto same = std::find_if(sites.begin(), sites.end(), [&](const CandidateSite& other) {
       const auto& o = std::get<SiteConfig>(sensors[other.sensors.front()].place);
-      return o.latitude_deg == site->latitude_deg && o.longitude_deg == site->longitude_deg &&
-             o.height_m == site->height_m;
+      const bool same_meridian =
+          std::abs(o.latitude_deg) == 90.0 ||
+          std::remainder(o.longitude_deg - site->longitude_deg, 360.0) == 0.0;
+      return o.latitude_deg == site->latitude_deg && same_meridian && o.height_m == site->height_m;
     });
     if (same != sites.end())
       same->sensors.push_back(k);

@@ -94,6 +94,19 @@ TEST(SurveySummary, SensorsOfOnePlaceAreOneCandidate) {
   EXPECT_NEAR(objects_detected(misses, {0}), (0.75 + 0.9) / 2, 1e-12);
 }
 
+TEST(SurveySummary, APlaceHasManyLongitudes) {
+  const auto at = [](double latitude_deg, double longitude_deg) {
+    return SensorConfig{.name = "x", .place = SiteConfig{"x", latitude_deg, longitude_deg, 0.0}};
+  };
+  const std::vector<SensorConfig> sensors{at(-17, 180), at(-17, -180), at(51, 0), at(51, 359.5),
+                                          at(51, -0.5), at(90, 0),     at(90, 77)};
+  const auto sites = candidate_sites(sensors);
+  ASSERT_EQ(sites.size(), 4u);
+  EXPECT_EQ(sites[0].sensors, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(sites[2].sensors, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(sites[3].sensors, (std::vector<std::size_t>{5, 6}));
+}
+
 TEST(SurveySummary, ASensorAddedNeverDetectsLess) {
   const SensorSurvey a{.sensor = "a", .passes = {pass(0, 0, 60, 0.5), pass(1, 0, 60, 0.2)}};
   const SensorSurvey b{.sensor = "b", .passes = {pass(1, 30, 90, 0.3), pass(2, 0, 10, 1e-6)}};
