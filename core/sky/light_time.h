@@ -7,9 +7,9 @@ namespace dmise {
 
 /// Satellites are seen where they were when their light left.
 struct LightTime {
-  static constexpr EffectFacts facts{"light_time",
-                                     "objects are seen where they were when the light left",
-                                     "up to 5.2 arcsec", "three iterations of range / c"};
+  static constexpr EffectFacts facts{
+      "light_time", "objects are seen where they were when the light left",
+      "up to 5.2 arcsec; the Sun 20.5", "three iterations of range / c"};
 
   // No plan leaves it out: it displaces an object along its path alike in every frame, which tracks
   // do not average out as they do other errors. It costs a microsecond for each object.

@@ -240,6 +240,11 @@ void add_disc_facts(const View& view, PlanFacts& f) {
   const SimTime t = view.times().middle;
   const Band& band = sensor.camera.band;
   double radiance = 0.0;
+  const auto moves_by = [&](const Vec<Gcrs>& velocity_m_per_s) {
+    f.light_time_rad = std::max(f.light_time_rad, norm(velocity_m_per_s) / speed_of_light_m_per_s);
+  };
+  if (scene.sun_in_field) moves_by(view.environment().earth_velocity_m_per_s);
+  if (scene.moon_in_field) moves_by(view.environment().moon_velocity_m_per_s);
   if (scene.sun_in_field)
     radiance = SunRadiance(band, norm(seen_sun(view, t).above_air_m)).photons_per_s_m2_sr(0.0);
   if (scene.moon_in_field)

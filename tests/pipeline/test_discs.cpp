@@ -286,6 +286,32 @@ TEST(DiscsInField, CanBeSwitchedOffAndActWhereTheyAreSeenAlone) {
   EXPECT_EQ(elsewhere.frame().report.plan.find("_disc"), std::string::npos);
 }
 
+PixelPosition centre_of_light(const ExpectedElectronImage& image) {
+  PixelPosition sum;
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.columns; ++x)
+      sum = sum + PixelPosition{double(x), double(y)} * double(image.at(x, y));
+  return sum * (1.0 / sum_of(image));
+}
+
+// The Sun is seen 20.5 arcsec and the Moon 0.7 from where it is when the light comes, by the
+// Earth's and its own way.
+TEST(DiscsInField, PlansDrawThemWhereTheirLightComesFrom) {
+  const Vec<Gcrs> at_m{4.2e7, 1e6, 2e6};
+  for (const auto& middle_m : {bodies().sun_m, bodies().moon_m})
+    for (const char* accuracy : {"standard", "reference"}) {
+      Stage stage(in_space(at_m, towards(middle_m - at_m), camera(300, 300, 0.2)) +
+                  "\naccuracy: " + accuracy + "\n");
+      const auto plan = stage.frame().report.plan;
+      const bool sun = norm(middle_m) > 1e10;
+      EXPECT_TRUE(!sun || plan.find("light_time") != std::string::npos) << plan;
+      const auto image = light_of(stage);
+      Stage whole(in_space(at_m, towards(middle_m - at_m), camera(300, 300, 0.2)));
+      const PixelPosition off = centre_of_light(image) - centre_of_light(light_of(whole));
+      EXPECT_LT(std::hypot(off.x_px, off.y_px), 0.05) << plan;
+    }
+}
+
 TEST(DiscsInField, AnObjectWithAShapeHidesWhatIsBehind) {
   const Vec<Gcrs> at_m = unit(bodies().sun_m) * 4.2e7, line = -unit(at_m);
   const Vec<Gcrs> box_m = at_m + line * 2e4;
