@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <thread>
 
+#include "core/base/crc32c.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/formatted.h"
@@ -86,6 +88,27 @@ std::string sample_name(std::uint64_t seed, const char* ending) {
 /// First line of the text files of parts.
 std::string digest_line(const DatasetPlan& plan) { return "dataset " + plan.digest + "\n"; }
 
+/// Second line of the text file of a sample, of what its archive holds.
+std::string members_line(std::string_view members) {
+  return formatted("members %zu %08x\n", members.size(), crc32c(members.data(), members.size()));
+}
+
+/// The size of a file; -1 if there is none.
+std::int64_t size_of(const std::string& path) {
+  std::error_code missing;
+  const auto size = fs::file_size(path, missing);
+  return missing ? -1 : std::int64_t(size);
+}
+
+/// The size that a file has by the JSON of `DigestedFile`; -1 if the JSON does not have it.
+std::int64_t size_by(const std::string& json, const std::string& name) {
+  constexpr std::string_view field = "\"bytes\":";
+  const std::size_t named = json.find("\"name\":\"" + name + "\"");
+  const std::size_t at = json.find(field, named);
+  if (named == std::string::npos || at == std::string::npos) return -1;
+  return std::atoll(json.c_str() + at + field.size());
+}
+
 /// A file that is written atomically, with its digest and size.
 class DigestedFile {
  public:
@@ -122,7 +145,10 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
   const std::string lock_path = path_ + "/.dataset-lock";
   // Without a lock, which could not be made in a directory that is only read.
   if (!force && (path_exists(path_ + "/dataset.json") || !path_exists(lock_path))) try {
-      if (content() == Content::same_complete) return false;
+      if (content() == Content::same_complete) {
+        require_whole();
+        return false;
+      }
     } catch (const ConfigError&) {
       // Another process may have begun meanwhile.
       if (path_exists(path_ + "/dataset.json") || !path_exists(lock_path)) throw;
@@ -130,7 +156,10 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
   lock_.emplace(lock_path);
   const bool alone = lock(force);
   if (force) clear();
-  if (!force && content() == Content::same_complete) return false;
+  if (!force && content() == Content::same_complete) {
+    require_whole();
+    return false;
+  }
   if (alone) {
     make_directories(path_ + "/parts");
     // First the plan: it tells that the other files are ours.
@@ -213,25 +242,45 @@ void DatasetDirectory::remove_parts() const {
     fs::remove(path_ + "/parts", ignored);  // if it is empty
 }
 
+void DatasetDirectory::require_whole() const {
+  const std::string manifest = read_text_file(path_ + "/dataset.json", any_size);
+  std::vector<std::string> names{"coco.json"};
+  for (std::size_t shard = 0; shard < plan_.shards(); ++shard) names.push_back(shard_name(shard));
+  for (const std::string& name : names) {
+    const std::int64_t size = size_of(path_ + "/" + name), wanted = size_by(manifest, name);
+    if (size == wanted) continue;
+    throw ConfigError(path_ + ": " + name + " " +
+                      (size < 0 ? "is missing" : "has " + std::to_string(size) + " bytes") +
+                      ", by dataset.json it has " + std::to_string(wanted) +
+                      "; --force makes all anew");
+  }
+}
+
 bool DatasetDirectory::has_shard(std::size_t shard) const {
-  return path_exists(part(shard_name(shard, ".json"))) &&
-         path_exists(path_ + "/" + shard_name(shard));
+  const std::string json = part(shard_name(shard, ".json"));
+  const std::int64_t size = size_of(path_ + "/" + shard_name(shard));
+  return size >= 0 && path_exists(json) && size == size_by(read_text_file(json), shard_name(shard));
 }
 
 bool DatasetDirectory::has_sample(std::uint64_t seed) const {
-  return path_exists(part(sample_name(seed, ".tar")));
+  const std::int64_t size = size_of(part(sample_name(seed, ".tar")));
+  const std::string text = part(sample_name(seed, ".coco"));
+  if (size < 0 || !path_exists(text)) return false;
+  const std::string lines = read_text_file(text, any_size);
+  return lines.find("\nmembers " + std::to_string(size) + " ") + 1 == digest_line(plan_).size();
 }
 
 void DatasetDirectory::write_sample(std::uint64_t seed,
                                     const std::vector<SampleFrame>& frames) const {
-  std::string members, lines = digest_line(plan_);
+  std::string members, lines;
   for (const SampleFrame& frame : frames) {
     members += frame.members;
     lines += std::string(image_mark) + frame.coco_image + "\n";
     for (const std::string& annotation : frame.coco_annotations)
       lines += std::string(annotation_mark) + annotation + "\n";
   }
-  write_file_whole(part(sample_name(seed, ".coco")), lines);
+  write_file_whole(part(sample_name(seed, ".coco")),
+                   digest_line(plan_) + members_line(members) + lines);
   // Last: it marks the sample as complete.
   write_file_whole(part(sample_name(seed, ".tar")), members);
 }
@@ -249,8 +298,13 @@ void DatasetDirectory::assemble(std::size_t shard) const {
   DigestedFile archive(path_ + "/" + name);
   std::string lines;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    lines += lines_of(sample_name(seed, ".coco"));
-    archive.append(read_text_file(part(sample_name(seed, ".tar")), any_size));
+    const std::string members = read_text_file(part(sample_name(seed, ".tar")), any_size);
+    const std::string text = lines_of(sample_name(seed, ".coco")),
+                      first_line = members_line(members);
+    if (!text.starts_with(first_line))
+      throw Error(part(sample_name(seed, ".tar")) + ": is damaged; removed, it is made again");
+    lines += text.substr(first_line.size());
+    archive.append(members);
   }
   archive.append(tar_end());
   const auto count = [&](std::string_view mark) {

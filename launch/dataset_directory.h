@@ -42,15 +42,17 @@ class DatasetDirectory {
   /// Begins or continues the work of a task, which is locked for the lifetime of this object.
   /// `force` removes a data set, and files with the names of one. Returns false if this data set is
   /// complete. Throws `ConfigError` if there are files of another or of none, or other processes
-  /// work on the same task, with another number of tasks or, with `force`, at all.
+  /// work on the same task, with another number of tasks or, with `force`, at all; and if files of
+  /// a complete data set are missing or have another size than by its manifest.
   bool begin(const DatasetTask& task, bool force);
 
+  /// Whether it is there, in its size; so also a sample.
   bool has_shard(std::size_t shard) const;
   bool has_sample(std::uint64_t seed) const;
   /// Writes a sample, complete or not at all.
   void write_sample(std::uint64_t seed, const std::vector<SampleFrame>& frames) const;
   /// Puts an archive together from its samples, which are then removed. Throws `Error` if one is
-  /// of another data set.
+  /// of another data set, or damaged.
   void assemble(std::size_t shard) const;
   /// Writes coco.json and dataset.json if all archives exist, and ends the work. Returns the number
   /// of missing ones.
@@ -69,6 +71,8 @@ class DatasetDirectory {
   void require_tasks(const DatasetTask& task) const;
   void clear() const;
   void remove_parts() const;
+  /// Throws `ConfigError` unless all files of a complete data set have the sizes of its manifest.
+  void require_whole() const;
   std::string lines_of(const std::string& part_name) const;
   std::string write_coco() const;
 

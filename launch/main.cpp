@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 
@@ -63,4 +64,8 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace dmise
 
-int main(int argc, char** argv) { return dmise::after_output(dmise::run(argc, argv)); }
+int main(int argc, char** argv) {
+  // A file that grows beyond the limit of ulimit -f is an error of its writer, with a message.
+  std::signal(SIGXFSZ, SIG_IGN);
+  return dmise::after_output(dmise::run(argc, argv));
+}

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -19,8 +20,13 @@ struct Threads::Pool {
   int running = 0;
   bool stop = false;
 
+  /// With fewer threads where the system allows no more: what is computed does not depend on it.
   explicit Pool(int extra) {
-    for (int i = 0; i < extra; ++i) threads.emplace_back([this] { loop(); });
+    threads.reserve(std::size_t(extra));
+    try {
+      for (int i = 0; i < extra; ++i) threads.emplace_back([this] { loop(); });
+    } catch (const std::system_error&) {
+    }
   }
   ~Pool() {
     {

@@ -84,6 +84,41 @@ TEST_F(DatasetDirectories, HaveTheFilesOfADataSet) {
             "contains another data set; --force replaces it, --out writes elsewhere");
 }
 
+TEST_F(DatasetDirectories, WithoutAFileThatTheManifestListsAreRefused) {
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({}, false));
+  make(dataset);
+  ASSERT_EQ(dataset.finish(), 0u);
+  for (const char* name : {"coco.json", "dataset-000001.tar"}) {
+    const std::string whole = text_of(name), size = std::to_string(whole.size());
+    write(name, whole.substr(1));
+    EXPECT_EQ(refusal(), std::string(name) + " has " + std::to_string(whole.size() - 1) +
+                             " bytes, by dataset.json it has " + size + "; --force makes all anew");
+    fs::remove(directory + "/" + name);
+    EXPECT_EQ(refusal(), std::string(name) + " is missing, by dataset.json it has " + size +
+                             "; --force makes all anew");
+    write(name, whole);
+  }
+  EXPECT_FALSE(open().begin({}, false));
+}
+
+TEST_F(DatasetDirectories, MakeDamagedPartsAgain) {
+  DatasetDirectory dataset = open();
+  ASSERT_TRUE(dataset.begin({}, false));
+  const std::vector<SampleFrame> frames{{.key = "k", .members = "0123456789"}};
+  for (const std::uint64_t seed : {1, 2}) dataset.write_sample(seed, frames);
+  EXPECT_TRUE(dataset.has_sample(1));
+  write("parts/sample-1.tar", "01234");
+  EXPECT_FALSE(dataset.has_sample(1));
+  write("parts/sample-1.tar", "0123456780");
+  EXPECT_THROW(dataset.assemble(0), Error);
+  dataset.write_sample(1, frames);
+  dataset.assemble(0);
+  EXPECT_TRUE(dataset.has_shard(0));
+  write("dataset-000000.tar", "");
+  EXPECT_FALSE(dataset.has_shard(0));
+}
+
 TEST_F(DatasetDirectories, WithFilesThatAreOfNoDataSetAreRefused) {
   for (const char* name : {"scenario.yaml", "coco.json", "dataset-000007.tar", "parts/my-file"}) {
     write(name, "mine");
