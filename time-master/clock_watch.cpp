@@ -39,7 +39,7 @@ void ClockWatch::check(const Coordinator& coordinator, Instant now) {
     quiet_since_ = now;
   } else if (now - quiet_since_ >= patience) {
     const std::string holding = joined(state.second);
-    const bool paused = coordinator.pace().paused();
+    const bool paused = coordinator.paused();
     log_event(
         spdlog::level::info, "clock_held",
         {{"granted_tick", coordinator.granted()},

@@ -98,12 +98,12 @@ void Coordinator::settle(Tick last, Instant now) {
   while (settled_ < last) pace_.finished(++settled_, now);
 }
 
-void Coordinator::pause(Tick at) {
-  if (!over()) pace_.pause(std::max(at, granted_));
+void Coordinator::pause(Tick at, Instant now) {
+  if (!over()) pace_.pause(std::max(at, granted_), granted_ + 1, now);
 }
 
 void Coordinator::step(Tick ticks, Instant now) {
-  pace_.step(std::max<Tick>(ticks, 0));
+  pace_.step(std::max<Tick>(ticks, 0), granted_ + 1);
   grant(now);
 }
 

@@ -106,8 +106,9 @@ class Coordinator {
   /// anything.
   void excuse(Instant since, Instant now);
 
-  /// Grants no tick after `at`, or after the last granted one if that is later.
-  void pause(Tick at = -1);
+  /// Grants no tick after `at`, or after the last granted one if that is later; those until then
+  /// at the pace.
+  void pause(Tick at = -1, Instant now = Instant{0});
   void step(Tick ticks, Instant now = Instant{0});
   void go_on(Instant now = Instant{0});
   /// Simulated seconds per second from now on, 0 to max_pace_factor; 0: as fast as possible.
@@ -124,6 +125,8 @@ class Coordinator {
   /// Last tick that all have done.
   Tick settled() const { return settled_; }
   const Pace& pace() const { return pace_; }
+  /// Whether a pause has begun: no tick is granted until it ends.
+  bool paused() const { return pace_.paused(granted_ + 1); }
   /// When `check` has something to grant, if only time is needed.
   std::optional<Instant> next_due() const;
   /// When `check` will find a lost node unless more is heard until then. Empty before anybody has

@@ -101,7 +101,7 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
   endpoints->set_granted_tick(coordinator.granted());
   endpoints->set_settled_tick(coordinator.settled());
   endpoints->set_last_tick(coordinator.options().last_tick);
-  endpoints->set_paused(coordinator.pace().paused());
+  endpoints->set_paused(coordinator.paused());
   endpoints->set_pace(coordinator.pace().factor());
   endpoints->set_overruns(coordinator.pace().overruns());
   endpoints->set_worst_lag_s(to_seconds(coordinator.pace().worst_lag()));
@@ -130,7 +130,7 @@ void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {
                               : "ended on request: " + printable(control.reason());
   switch (control.action()) {
     case v1::Control::ACTION_PAUSE:
-      return coordinator.pause(control.tick());
+      return coordinator.pause(control.tick(), now);
     case v1::Control::ACTION_STEP:
       return coordinator.step(control.tick(), now);
     case v1::Control::ACTION_GO_ON:

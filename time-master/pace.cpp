@@ -25,13 +25,21 @@ Pace::Pace(PaceOptions options, Tick first_tick) : options_(options), anchor_tic
 
 void Pace::start(Instant now) { epoch_ = now; }
 
-void Pace::step(Tick ticks) {
-  if (pause_after_) *pause_after_ += ticks;
+void Pace::pause(Tick tick, Tick next, Instant now) {
+  go_on(next, now);
+  pause_after_ = tick;
+}
+
+void Pace::step(Tick ticks, Tick next) {
+  if (!pause_after_) return;
+  stepped_ = stepped_ || paused(next);
+  *pause_after_ += ticks;
 }
 
 void Pace::go_on(Tick next, Instant now) {
   if (!pause_after_) return;
   pause_after_.reset();
+  stepped_ = false;
   schedule(next, part_until(next, now), now);
 }
 
@@ -58,7 +66,7 @@ void Pace::schedule(Tick next, double part, Instant now) {
 }
 
 void Pace::finished(Tick tick, Instant now) {
-  if (!timed() || !epoch_ || paused() || tick + 1 < anchor_tick_) return;
+  if (!timed() || !epoch_ || stepped_ || paused(tick + 1) || tick + 1 < anchor_tick_) return;
   const Instant lag = now - due(tick + 1);
   if (lag <= Instant{0}) return;
   ++overruns_;
@@ -66,8 +74,8 @@ void Pace::finished(Tick tick, Instant now) {
 }
 
 Tick Pace::limit(Instant now) const {
-  Tick limit = pause_after_.value_or(std::numeric_limits<Tick>::max());
-  if (paused() || !timed()) return limit;
+  const Tick limit = pause_after_.value_or(std::numeric_limits<Tick>::max());
+  if (stepped_ || !timed()) return limit;
   if (!epoch_ || now < *epoch_) return anchor_tick_ - 1;
   const double ticks =
       double((now - *epoch_).count()) * options_.factor / double(options_.tick_length.ns);
@@ -76,11 +84,11 @@ Tick Pace::limit(Instant now) const {
   Tick tick = anchor_tick_ + Tick(ticks);
   while (due(tick + 1) <= now) ++tick;
   while (tick >= anchor_tick_ && due(tick) > now) --tick;
-  return tick;
+  return std::min(tick, limit);
 }
 
 std::optional<Instant> Pace::due_after(Tick granted) const {
-  if (!timed() || !epoch_ || paused()) return std::nullopt;
+  if (!timed() || !epoch_ || stepped_ || paused(granted + 1)) return std::nullopt;
   return due(granted + 1);
 }
 

@@ -20,10 +20,11 @@ class Pace {
 
   /// `first_tick` is due now.
   void start(Instant now);
-  /// No tick after `tick` until `step` or `go_on`.
-  void pause(Tick tick) { pause_after_ = tick; }
-  /// If paused, allows `ticks` more.
-  void step(Tick ticks);
+  /// No tick after `tick` until `step` or `go_on`; those until then come at the pace. `next`: the
+  /// first that is not granted, due as by `go_on` if there was a pause before.
+  void pause(Tick tick, Tick next, Instant now);
+  /// If there is a pause, allows `ticks` more; at once, if it has begun.
+  void step(Tick ticks, Tick next);
   /// Ends a pause. `next`, the first tick that is not granted, is due as soon as it was at the
   /// pause: at most a tick from now. Ticks that were late are due from now on; no overrun.
   void go_on(Tick next, Instant now);
@@ -33,7 +34,8 @@ class Pace {
   /// All nodes have done `tick`.
   void finished(Tick tick, Instant now);
 
-  bool paused() const { return pause_after_.has_value(); }
+  /// Whether a pause has begun; `next` as in `pause`.
+  bool paused(Tick next) const { return pause_after_ && next > *pause_after_; }
   double factor() const { return options_.factor; }
   /// Last tick that may be granted.
   Tick limit(Instant now) const;
@@ -57,6 +59,7 @@ class Pace {
   Tick anchor_tick_;
   std::optional<Instant> epoch_;  // when anchor_tick_ is due
   std::optional<Tick> pause_after_;
+  bool stepped_ = false;  // in this pause: ticks do not wait for real time
   std::uint64_t overruns_ = 0;
   Instant worst_lag_{0};
 };

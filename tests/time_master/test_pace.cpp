@@ -19,7 +19,7 @@ using testing::IsEmpty;
 
 /// Paused, and all granted ticks are done.
 bool is_frozen(const Coordinator& master) {
-  return master.pace().paused() && master.settled() >= master.granted();
+  return master.paused() && master.settled() >= master.granted();
 }
 
 CoordinatorOptions real_time(double factor, int window = 1) {
@@ -200,6 +200,39 @@ TEST(Pause, FreezesAtATickToCome) {
   for (Tick tick = 0; tick <= 5; ++tick) master.done("camera", tick);
   EXPECT_EQ(master.granted(), 5);
   EXPECT_TRUE(is_frozen(master));
+}
+
+TEST(Pause, TicksUntilOneToComeKeepThePace) {
+  Coordinator master = started(real_time(1.0));  // ticks of 5 s
+  master.pause(2, seconds(1));
+  EXPECT_FALSE(master.paused());
+  master.done("camera", 0, seconds(1));
+  EXPECT_EQ(master.granted(), 0);
+  EXPECT_EQ(master.next_due(), seconds(5));
+  master.check(seconds(5));
+  EXPECT_EQ(master.granted(), 1);
+  master.done("camera", 1, seconds(11));  // late by a second
+  EXPECT_EQ(master.pace().overruns(), 1u);
+  EXPECT_EQ(master.granted(), 2);
+  EXPECT_TRUE(master.paused());
+  EXPECT_FALSE(master.next_due());
+  master.done("camera", 2, seconds(100));
+  EXPECT_EQ(master.pace().overruns(), 1u);
+  // From one pause to another: no tick is late because of the first.
+  master.pause(4, seconds(200));
+  EXPECT_FALSE(master.paused());
+  master.check(seconds(200));
+  EXPECT_EQ(master.granted(), 3);
+  master.done("camera", 3, seconds(201));
+  EXPECT_EQ(master.next_due(), seconds(205));
+  master.check(seconds(205));
+  master.done("camera", 4, seconds(206));
+  EXPECT_TRUE(is_frozen(master));
+  EXPECT_EQ(master.granted(), 4);
+  master.step(2, seconds(207));  // at once
+  master.done("camera", 5, seconds(207));
+  EXPECT_EQ(master.granted(), 6);
+  EXPECT_EQ(master.pace().overruns(), 1u);
 }
 
 TEST(Pause, IsNoOverrunOfRealTime) {

@@ -148,9 +148,11 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
           is_name(message.node_news().name()) && is_tick_or_none(message.node_news().done_tick()),
           "node news: invalid name or tick");
     case v1::NodeMessage::kControl:
-      return unless(is_tick_or_none(message.control().tick()) &&
+      return unless(v1::Control::Action_IsValid(message.control().action()) &&
+                        message.control().action() != v1::Control::ACTION_UNSPECIFIED &&
+                        is_tick_or_none(message.control().tick()) &&
                         is_duration(message.control().factor(), max_pace_factor),
-                    "control: invalid tick or factor");
+                    "control: invalid action, tick or factor");
     case v1::NodeMessage::BODY_NOT_SET:
       return "has no body";
     default:
