@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "core/base/error.h"
@@ -212,7 +213,10 @@ void add_catalogue_command(CLI::App& app) {
   synth->add_option("--objects", synthetic->objects, "number of objects")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
-  synth->add_option("--seed", synthetic->seed, "seed of the random numbers")->capture_default_str();
+  synth->add_option("--seed", synthetic->seed, "seed of the random numbers")
+      ->capture_default_str()
+      ->check(
+          CLI::Range(std::uint64_t{0}, std::uint64_t(std::numeric_limits<std::int64_t>::max())));
   synth
       ->add_option("--format", synthetic->format,
                    "3le, or omm (CSV); default omm above 339999 objects, the limit of a TLE")

@@ -46,10 +46,23 @@ ProductKind kind_of(const ExportOptions& options, const ExportFormat& format) {
   const auto kind = options.truth    ? ProductKind::truth
                     : options.tracks ? ProductKind::tracks
                                      : ProductKind::detections;
-  if (std::find(format.kinds.begin(), format.kinds.end(), kind) == format.kinds.end())
+  if (std::find(format.kinds.begin(), format.kinds.end(), kind) == format.kinds.end()) {
+    std::vector<std::string> holds;
+    for (const ProductKind held : format.kinds) holds.emplace_back(name_of(held));
     throw ConfigError(std::string("--") + name_of(kind) + ": " + format.name + " holds only " +
-                      name_of(format.kinds.front()));
+                      joined(holds, " and "));
+  }
   return kind;
+}
+
+/// Refuses options that the content does not go by.
+void check_use(const ExportOptions& options, const ExportFormat& format, ProductKind kind) {
+  const bool has_elements = format.takes_elements && kind == ProductKind::truth;
+  if (!options.catalogues.empty() && !has_elements)
+    throw ConfigError(std::string("--catalogue: ") + format.name + " takes no element sets here");
+  if (!options.sensor.empty() && (has_elements || kind == ProductKind::tracks))
+    throw ConfigError("--sensor: " + std::string(has_elements ? "element sets" : "tracks") +
+                      " are of no sensor");
 }
 
 /// Path of a catalogue that a scenario names.
@@ -111,6 +124,7 @@ void write(const ExportedFile& file, fs::path path) {
 }
 
 fs::path export_kind(const ExportOptions& options, const ExportFormat& format, ProductKind kind) {
+  check_use(options, format, kind);
   std::error_code unknown;
   const bool is_file = fs::path(format.file).has_extension();
   if (fs::exists(options.out, unknown) && fs::is_directory(options.out, unknown) == is_file)

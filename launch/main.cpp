@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", version_text("dmise"));
   app.require_subcommand(1);
   for (const auto add_command : commands) add_command(app);
+  want_decimal_numbers(app);
   constexpr std::size_t longest = 4000;  // of an error message [bytes]
   try {
     app.parse(argc, argv);

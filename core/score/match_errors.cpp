@@ -1,6 +1,7 @@
 #include "core/score/match_errors.h"
 
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "core/base/units.h"
@@ -59,6 +60,11 @@ void add_ends(MatchErrors& e, const ScoredTruth& t, const Detection& d, const Tr
   e.end_time_s = (second_time - *t.truth.start_time).seconds() - second.u * exposure_s;
 }
 
+/// Whether a band is V by its name, as "bessell-V": truth has magnitudes of no other.
+bool is_visual(std::string_view band) {
+  return band == "V" || band.ends_with("-V") || band.ends_with(" V") || band.ends_with("_V");
+}
+
 }  // namespace
 
 MatchErrors errors_of(const ScoredTruth& t, const Detection& d, const ScoredFrame& frame) {
@@ -74,7 +80,7 @@ MatchErrors errors_of(const ScoredTruth& t, const Detection& d, const ScoredFram
     e.over_bound = *e.across_px / position_bound_px({*t.truth.signal_e, t.length_px, *frame.noise_e,
                                                      *frame.sigma_px});
   add_direction(e, t, d);
-  if (t.truth.magnitude && (d.band == "V" || !t.truth.start_time)) {
+  if (t.truth.magnitude && (is_visual(d.band) || !t.truth.start_time)) {
     e.magnitude = d.magnitude - frame.solar_colour_mag - *t.truth.magnitude;
     if (d.magnitude_sigma > 0.0) e.magnitude_over_sigma = *e.magnitude / d.magnitude_sigma;
   }

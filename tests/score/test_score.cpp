@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/score/score_text.h"
@@ -133,6 +135,20 @@ TEST(Score, RandomScenesAddUpAndDoNotDependOnTheOrderOfLines) {
 
 // A streak of 100 px along (0.6, 0.8), of 2 s: found 0.3 px along and 0.2 px to the right of it,
 // its start 1 px early and its end 2 px early.
+TEST(Score, MagnitudesAreComparedInBandsThatAreV) {
+  const PixelPosition start{100, 100}, end{160, 180};
+  for (const auto& [band, compared] : std::map<std::string, bool>{
+           {"V", true}, {"bessell-V", true}, {"bessell-R", false}, {"UV", false}, {"", false}}) {
+    ScoreInput in{.frames = {frame()}, .truths = {source("a", start, end)}};
+    in.truths[0].start_time = SimTime{1000000000};
+    in.truths[0].magnitude = 8.0;
+    in.detections = {found(0, start, end)};
+    in.detections[0].detection.band = band;
+    in.detections[0].detection.magnitude = 8.5;
+    EXPECT_EQ(score(in, {}).truths[0].errors.magnitude.has_value(), compared) << band;
+  }
+}
+
 TEST(Score, ErrorsAreAlongAndAcrossTheTrail) {
   const PixelPosition along{0.6, 0.8}, right{-0.8, 0.6}, start{100, 100}, end{160, 180};
   ScoreInput in{.frames = {frame()}, .truths = {source("a", start, end)}};

@@ -109,6 +109,21 @@ CLI::Validator number_between(double low, double high) {
           range.get_description(), "number"};
 }
 
+void want_decimal_numbers(CLI::App& command) {
+  const auto why_not = [](const std::string& text) -> std::string {
+    std::string_view digits = text;
+    if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
+    const bool other_base = digits.size() > 1 && digits.front() == '0';
+    return other_base ? "Value " + text + " is no decimal number: it begins with 0" : "";
+  };
+  for (CLI::Option* option : command.get_options())
+    if (const std::string type = option->get_type_name();
+        type.starts_with("INT") || type.starts_with("UINT"))
+      option->transform(CLI::Validator([why_not](std::string& text) { return why_not(text); }, ""));
+  for (CLI::App* part : command.get_subcommands([](CLI::App*) { return true; }))
+    want_decimal_numbers(*part);
+}
+
 int end_of_command_line(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);
   std::string command;
