@@ -143,6 +143,9 @@ def gateways_follow_a_replay(binary, path):
     """A replay begins when an observer has subscribed: here the live view alone."""
     with Run(*command("replay", path, "--speed", "max")) as playing:
         address = playing.process.stdout.readline().strip()
+        asked = subprocess.run([binary, "clock", "pause", address], capture_output=True, text=True, check=False)
+        check(asked.returncode == 1 and asked.stderr.strip().endswith("it can be observed, not controlled"),
+              f"its clock is not controlled: {asked.returncode} {asked.stderr.strip()}")
         with Run(pathlib.Path(binary).with_name("dmise-gateway"), "--master", address, "--listen", "127.0.0.1:0"):
             code, _ = playing.finish()
     check(code == 0, f"a gateway follows a replay: {playing.stderr.strip()}")

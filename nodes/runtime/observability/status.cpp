@@ -1,6 +1,7 @@
 #include "nodes/runtime/observability/status.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/seconds.h"
@@ -41,7 +42,10 @@ class Conversation {
     wait_for(items, deadline_ - now());
     const auto frame = receive_one(socket_);
     v1::MasterMessage answer;
-    if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
+    const bool understood = frame && from_frame(*frame, &answer);
+    if (understood && answer.has_refuse())
+      throw Error(address_ + ": " + printable(answer.refuse().reason()));
+    if (!understood || !answer.has_endpoints())
       throw Error("no answer from a time-master at " + address_);
     return status_of(answer.endpoints());
   }

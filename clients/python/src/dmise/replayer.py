@@ -182,10 +182,11 @@ class Replay:
             asked = protocol.NodeMessage.FromString(request).WhichOneof("body")
         except Exception:  # whatever a library makes of wrong bytes
             return
-        if asked in ("hello", "control"):
+        if asked == "hello":
             answer = protocol.MasterMessage(endpoints=self._endpoints)
-        elif asked == "join":
-            answer = protocol.MasterMessage(refuse=protocol.Refuse(reason="this is a replay: it can be observed, not joined"))
+        elif asked in ("join", "control"):
+            reason = "this is a replay: it can be observed, not " + ("joined" if asked == "join" else "controlled")
+            answer = protocol.MasterMessage(refuse=protocol.Refuse(reason=reason))
         else:
             return
         self._try(self._master, [peer, answer.SerializeToString()])
