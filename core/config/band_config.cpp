@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/config/search_path.h"
 #include "core/photometry/curve_file.h"
+#include "core/photometry/spectrum.h"
 
 namespace dmise {
 namespace {
@@ -52,17 +54,32 @@ const Section& band_section() {
   return section;
 }
 
+/// Refuses a band that reaches beyond the spectra of the sources.
+void check_spectrum(const YamlValue& value, const Band& band) {
+  const auto& at = sunlight_spectrum().irradiance.wavelength_m;
+  if (band.low_m() >= at.front() && band.high_m() <= at.back()) return;
+  value.fail(formatted("a band must lie within %g to %g um, the spectra of the sources, got %g to "
+                       "%g um",
+                       at.front() * 1e6, at.back() * 1e6, band.low_m() * 1e6, band.high_m() * 1e6),
+             false);
+}
+
 }  // namespace
 
 Forms band_forms() { return form::text(filter_names()) | form::map(band_section); }
 
 Band read_band(const YamlValue& value) {
-  if (value.is_scalar()) return read_filter(value);
+  if (value.is_scalar()) {
+    Band band = read_filter(value);
+    check_spectrum(value, band);
+    return band;
+  }
   YamlMap map(value, band_section());
   if (const auto filter = map.find("filter")) {
     Band band = read_filter(*filter);
     if (const auto name = map.find("name")) band.name = name->text();
     map.done();
+    check_spectrum(*filter, band);
     return band;
   }
   Band band;
@@ -71,6 +88,7 @@ Band read_band(const YamlValue& value) {
   band.centre_m = map.number("centre_m");
   band.width_m = map.number("width_m", Bounds::between(narrowest_m, 2 * band.centre_m));
   map.done();
+  check_spectrum(value, band);
   return band;
 }
 

@@ -73,6 +73,13 @@ double width_px(const Measures& m) {
   return std::hypot(std::hypot(m.airy_px, m.seeing_px), std::hypot(m.jitter_px, m.defocus_px));
 }
 
+/// How much narrower long exposures are than with an infinite outer scale. Source: Tokovinin 2002,
+/// PASP 114, 1156, whose formula goes to 0 at 9 r0.
+double narrowing_by_outer_scale(const SensorSeeing& air, double wavelength_m) {
+  const double r0_over_scale = air.r0_at_m(wavelength_m) / air.outer_scale_m;
+  return std::sqrt(std::max(0.0, 1.0 - 2.183 * std::pow(r0_over_scale, 0.356)));
+}
+
 /// Screens of a short exposure; 0: there are too many of them, or no air.
 int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* air,
                double exposure_s) {
@@ -101,11 +108,13 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                     : plan.screens == 1 ? ExposureKind::brief
                                         : ExposureKind::between;
   const Measures m = measure(o, wavelength_m, air, plan.exposure == ExposureKind::lasting);
-  plan.fwhm_px = width_px(m);
+  Measures of_width = m;
+  if (air) of_width.seeing_px *= narrowing_by_outer_scale(*air, wavelength_m);
+  plan.fwhm_px = width_px(of_width);
 
   const bool plain = s.model == Model::gaussian;
   const bool even = !s.varying.any() && !s.drift.any();
-  const bool narrow = !plain && plan.fwhm_px < narrow_px && !is_aberrated(s);
+  const bool narrow = !plain && width_px(m) < narrow_px && !is_aberrated(s);
   if (s.method == Method::deposit && !even)
     refuse("method", "deposit is for a blur without psf_field and focus_drift");
   if (s.method == Method::deposit && !plain && !narrow)

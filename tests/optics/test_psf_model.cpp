@@ -215,6 +215,23 @@ TEST(PsfModel, ALastingExposureIsDiffractionTimesTheLongExposure) {
   }
 }
 
+TEST(PsfPlan, TheWidthIsThatOfTheKernelForEveryOuterScale) {
+  Optics o = telescope();
+  o.spread.support_px = 200;
+  o.spread.oversampling = plan_psf(o, lambda, {}, 1.0).oversampling;
+  for (const double outer_scale_m : {double(INFINITY), 100.0, 25.0, 5.0, 1.0, 0.2}) {
+    const SensorSeeing seeing{.r0_m = 0.1, .outer_scale_m = outer_scale_m};
+    const PsfKernel k = kernel_of_camera(o, seeing, 10.0);
+    const float half = 0.5f * *std::max_element(k.values.begin(), k.values.end());
+    const auto cells =
+        std::count_if(k.values.begin(), k.values.end(), [&](float v) { return v > half; });
+    const double width_px = std::sqrt(4.0 / pi * double(cells)) / o.spread.oversampling;
+    const double exact_to = outer_scale_m >= 20 * seeing.r0_m ? 0.12 : 0.18;
+    EXPECT_NEAR(plan_psf(o, lambda, seeing, 10.0).fwhm_px / width_px, 1.0, exact_to)
+        << outer_scale_m;
+  }
+}
+
 // The rungs between: one screen up to tau0, a mean of t / tau0 beyond, the long exposure at last;
 // their transfer functions draw near it.
 TEST(PsfModel, ExposuresBetweenConvergeToTheLongOne) {
