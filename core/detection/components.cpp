@@ -233,4 +233,24 @@ std::vector<Component> find_components(const CountImage& counts, const Backgroun
   return connect(runs, float(high));
 }
 
+std::vector<Component> parts_of(const Component& component, const FilteredFrame& frame, double low,
+                                double high) {
+  const int least = int(std::ceil(low * FilteredFrame::steps));
+  std::vector<PeakedRun> runs;
+  for (const Run& run : component.runs) {
+    const std::int8_t* row = frame.row(run.y);
+    for (int x = run.first_x; x <= run.last_x; ++x) {
+      if (row[x] < least) continue;
+      PeakedRun part{{run.y, x, x}, 0.0f, x};
+      for (; x <= run.last_x && row[x] >= least; ++x) {
+        part.run.last_x = x;
+        const float snr = float(row[x]) / FilteredFrame::steps;
+        if (snr > part.peak_snr) part.peak_snr = snr, part.peak_x = x;
+      }
+      runs.push_back(part);
+    }
+  }
+  return connect(runs, float(high));
+}
+
 }  // namespace dmise

@@ -31,6 +31,11 @@ std::vector<Component> find_components(const CountImage& counts, const Backgroun
                                        double sigma_px, double low, double high, Threads& threads,
                                        FilteredFrame* filtered = nullptr);
 
+/// Returns the connected parts of a component that are above `low` in a filtered frame and have a
+/// pixel above `high` there, in the same order.
+std::vector<Component> parts_of(const Component& component, const FilteredFrame& frame, double low,
+                                double high);
+
 /// Sum of squares of the unit-sum Gaussian on the pixel grid: a point source of flux F in white
 /// noise s has the matched-filter SNR F sqrt(this) / s.
 double kernel_square_sum(double sigma_px);

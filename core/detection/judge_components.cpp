@@ -56,6 +56,27 @@ bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c) {
   return true;
 }
 
+bool is_clipped(const Scene& scene, const Component& c) {
+  return std::ranges::any_of(c.runs, [&](const Run& run) {
+    for (int x = run.first_x; x <= run.last_x; ++x)
+      if (scene.saturated(x, run.y)) return true;
+    return false;
+  });
+}
+
+/// Appends the compact sources in a component which is long because a source is on the rim of a
+/// known star's wings.
+void find_beside_stars(const Scene& scene, const FilteredFrame& frame, const Component& component,
+                       std::vector<Source>& found) {
+  for (const Component& part :
+       parts_of(component, frame, detection_limits::connect_snr, detection_limits::seed_snr)) {
+    if (is_long(scene, part) || is_clipped(scene, part) || is_of_hidden_stars(frame, part))
+      continue;
+    if (auto judged = judge_compact(scene, part); judged.source)
+      found.push_back(std::move(*judged.source));
+  }
+}
+
 }  // namespace
 
 Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
@@ -85,6 +106,8 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
   for (const Component* component : longs) {
     const std::size_t before = out.sources.size();
     find_long_streaks(scene, *component, out.sources);
+    if (scene.known && out.sources.size() == before)
+      find_beside_stars(scene, filtered, *component, out.sources);
     if (out.sources.size() > before) continue;
     ++out.star_like;
     if (is_calm(*component)) out.reach_px[std::size_t(component - components.data())].reset();

@@ -142,6 +142,45 @@ TEST_F(KnownStars, MayBeElsewhereOrBehindClouds) {
   EXPECT_TRUE(detections(frame(43, {}, 0.0).expose()).empty());
 }
 
+// Points whose light touches that of a brighter star, 2 to 7 FWHM away: the two together are longer
+// than a star. Each point is 10 px or more from the light of others.
+TEST_F(KnownStars, LeavePointsOnTheRimOfTheirWings) {
+  header_.psf_fwhm_px = 2.4;
+  const auto stars = sky_.stars_in(header_, columns, rows, 300.0);
+  const auto is_clear = [](const auto& places, PixelPosition at, double px, double but_e) {
+    return std::ranges::all_of(places, [&](const ExpectedStar& other) {
+      return other.signal_e == but_e ||
+             std::hypot(other.place.x_px - at.x_px, other.place.y_px - at.y_px) > px;
+    });
+  };
+  int placed = 0, found = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    SimulatedFrame image = frame(80 + seed);
+    std::vector<ExpectedStar> points;
+    for (const ExpectedStar& star : stars) {
+      if (star.signal_e < 5000 || star.signal_e > 100000) continue;
+      const double px = image.uniform(5, 17), angle = image.uniform(0, 2 * pi);
+      const PixelPosition at{star.place.x_px + px * std::cos(angle),
+                             star.place.y_px + px * std::sin(angle)};
+      if (at.x_px < 20 || at.y_px < 20 || at.x_px > columns - 20 || at.y_px > rows - 20 ||
+          !is_clear(stars, at, 10.0, star.signal_e) || !is_clear(points, at, 40.0, 0.0))
+        continue;
+      points.push_back({at, image.uniform(8000, 12000)});
+      image.add_point(at.x_px, at.y_px, points.back().signal_e);
+    }
+    placed += int(points.size());
+    for (const Detection& d : detections(image.expose())) {
+      const bool real = !is_clear(points, {d.x_px, d.y_px}, 1.0, 0.0);
+      // Stars without a known place scatter the sky: a few reach the threshold.
+      EXPECT_TRUE(real || d.snr < 7)
+          << seed << ": " << d.x_px << ", " << d.y_px << ", SNR " << d.snr;
+      found += real;
+    }
+  }
+  EXPECT_GE(placed, 100);
+  EXPECT_GE(found, placed * 98 / 100);
+}
+
 TEST_F(KnownStars, ShowAStreakThatCrossesThem) {
   SimulatedFrame image = frame(50);
   image.add_streak(450, 350, 400, 0.3, 30000);
