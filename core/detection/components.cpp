@@ -235,7 +235,8 @@ std::vector<Component> find_components(const CountImage& counts, const Backgroun
 
 std::vector<Component> parts_of(const Component& component, const FilteredFrame& frame, double low,
                                 double high) {
-  const int least = int(std::ceil(low * FilteredFrame::steps));
+  const int least = frame.steps_of(low, component.peak_x, component.peak_y);
+  const int seed = frame.steps_of(high, component.peak_x, component.peak_y);
   std::vector<PeakedRun> runs;
   for (const Run& run : component.runs) {
     const std::int8_t* row = frame.row(run.y);
@@ -250,7 +251,7 @@ std::vector<Component> parts_of(const Component& component, const FilteredFrame&
       runs.push_back(part);
     }
   }
-  return connect(runs, float(high));
+  return connect(runs, float(seed) / FilteredFrame::steps);
 }
 
 }  // namespace dmise

@@ -49,6 +49,13 @@ struct FilteredFrame {
   /// Returns the cell around a place; before `flatten` one of noise alone.
   Cell cell_at(double x_px, double y_px) const;
 
+  /// Returns the steps that `flatten` has made of an SNR around a place.
+  int steps_of(double snr_before, int x, int y) const {
+    const Cell cell = cell_at(x, y);
+    const double flat = (snr_before * steps - double(cell.middle)) / double(cell.scatter);
+    return int(std::clamp(flat, 1.0, double(most)));
+  }
+
   /// Correlation of noise at `distance_px`.
   double correlation(double distance_px) const {
     return std::exp(-distance_px * distance_px / (4 * sigma_px * sigma_px));

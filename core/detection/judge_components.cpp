@@ -49,7 +49,8 @@ bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c) {
         if (frame.row(py)[px] == 0) return true;
     return false;
   };
-  const int seed = int(detection_limits::seed_snr * FilteredFrame::steps);
+  // Brighter pixels are clipped, so that they are fewer steps where the scatter is large.
+  const int seed = frame.steps_of(detection_limits::seed_snr, c.peak_x, c.peak_y);
   for (const Run& run : c.runs)
     for (int x = run.first_x; x <= run.last_x; ++x)
       if (frame.row(run.y)[x] >= seed && !touches_hidden(x, run.y)) return false;

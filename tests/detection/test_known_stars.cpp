@@ -181,6 +181,37 @@ TEST_F(KnownStars, LeavePointsOnTheRimOfTheirWings) {
   EXPECT_GE(found, placed * 98 / 100);
 }
 
+// A hot column is no scatter of the sky: points 8 px from it and more are found as without it.
+TEST_F(KnownStars, LeavePointsBesideAHotColumn) {
+  header_.psf_fwhm_px = 2.4;
+  constexpr int hot = 455;
+  SimulatedFrame image = frame(90);
+  std::vector<PixelPosition> places;
+  for (int i = 0; i < 28; ++i)
+    places.push_back({hot + (i % 2 == 0 ? 8.0 : -8.0) + (i % 2 == 0 ? 2.5 : -2.5) * (i / 2),
+                      image.uniform(0, 4) + 24.0 * i + 20});
+  for (const PixelPosition& p : places) image.add_point(p.x_px, p.y_px, image.uniform(3000, 20000));
+  const CountImage clean = image.expose();
+  const auto found_in = [&](const CountImage& counts) {
+    int found = 0;
+    for (const Detection& d : detections(counts)) {
+      const bool real = std::ranges::any_of(places, [&](const PixelPosition& p) {
+        return std::hypot(d.x_px - p.x_px, d.y_px - p.y_px) < 1.0;
+      });
+      EXPECT_TRUE(real) << d.x_px << ", " << d.y_px << ", SNR " << d.snr;
+      found += real;
+    }
+    return found;
+  };
+  const int all = found_in(clean);
+  EXPECT_GE(all, 24);
+  for (const std::uint16_t level : {0, 4000, 6000, 10000, 20000, 40000, 65535}) {
+    CountImage counts = clean;
+    for (int y = 0; y < rows; ++y) counts.row(y)[hot] = level;
+    EXPECT_GE(found_in(counts), all - 1) << level;
+  }
+}
+
 TEST_F(KnownStars, ShowAStreakThatCrossesThem) {
   SimulatedFrame image = frame(50);
   image.add_streak(450, 350, 400, 0.3, 30000);
