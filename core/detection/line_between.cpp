@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/detection/line_profile.h"
+#include "core/detection/source_fit.h"
 #include "core/detection/template_snr.h"
 
 namespace dmise {
@@ -13,6 +14,8 @@ constexpr double slopes_inverse_variance = 3.0;  // of an even distribution from
 constexpr double edge_sigmas = 4.0;              // of the PSF, within which light fades at an end
 constexpr double across_sigmas = 2.5;            // within which pixels are used
 constexpr double outlier = 4.0;                  // standard deviations
+constexpr double end_sigmas = 2.0;               // of the PSF, by which an end may miss an edge
+constexpr double gap_sigmas = 5.0;  // likewise, of a gap in which nothing is known of a trail
 
 /// A pixel in the fit of a line's light per px: its light and weight at a place along the line, by
 /// the share of that light in it and its variance.
@@ -63,6 +66,21 @@ std::vector<double> places_between(double first_px, double last_px, double half_
   return out;
 }
 
+/// How far a trail is measured to one side of its middle, if it ends at the edge of pixels without
+/// a value; else infinite. As at the frame's edge, light is that of the measured part.
+double measured_to_px(const Scene& scene, const Trail& t, double side, double sigma_px) {
+  const double end_px = t.length_px / 2;
+  if (!scene.unusable) return HUGE_VAL;
+  double edge_px = end_px;
+  while (has_values_at(scene, t, side * edge_px)) {
+    edge_px += least_step_px;
+    if (edge_px > end_px + end_sigmas * sigma_px) return HUGE_VAL;
+  }
+  for (double px = edge_px; px < edge_px + gap_sigmas * sigma_px; px += least_step_px)
+    if (has_values_at(scene, t, side * px)) return HUGE_VAL;
+  return edge_px;
+}
+
 void add(Beyond& to, const Sample& s, double share) {
   double light = share * s.light, weight = share * s.weight;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -82,6 +100,8 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
   if (samples.size() < 3) return {};
   const auto places =
       places_between(samples.front().along_px, samples.back().along_px, trail.length_px / 2);
+  const double before_px = measured_to_px(scene, trail, -1, sigma_px);
+  const double behind_px = measured_to_px(scene, trail, 1, sigma_px);
   std::vector<Beyond> whole(samples.size() + 1);  // all light from a sample on
   for (std::size_t k = samples.size(); k-- > 0;) {
     whole[k] = whole[k + 1];
@@ -91,6 +111,7 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
   std::size_t begin = 0, end = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double at = places[i];
+    if (at < -before_px || at > behind_px) continue;
     while (begin < samples.size() && samples[begin].along_px < at - edge_sigmas * sigma_px) ++begin;
     while (end < samples.size() && samples[end].along_px <= at + edge_sigmas * sigma_px) ++end;
     Beyond b = whole[end];

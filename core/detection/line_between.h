@@ -19,8 +19,9 @@ struct Beyond {
 };
 
 /// Returns possible ends on a trail's line, from `beyond_px` before the trail to as far behind it,
-/// within the frame: every half px near the trail's ends, farther away in steps of an eighth of the
-/// distance from them. Uses the pixels that a fit uses; empty if there are fewer than 3.
+/// within the frame and what is measured of it: every half px near the trail's ends, farther away
+/// in steps of an eighth of the distance from them. Uses the pixels that a fit uses; empty if there
+/// are fewer than 3.
 std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double beyond_px);
 
 /// A line of light between two ends: its likelihood, and its light with its errors.

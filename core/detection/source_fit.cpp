@@ -64,12 +64,22 @@ double way_to_edge_px(const Trail& t, const Scene& scene, double side) {
   return std::min(way(t.x_px, c, scene.counts.columns), way(t.y_px, s, scene.counts.rows));
 }
 
-/// Puts an end outside the frame on its edge: no pixel measures what is beyond, so that length and
-/// light would have no bound. The part in the frame stays as it is; errors are those after a
-/// measurement of that end, by the gain of a Kalman filter.
+/// The part of a trail from its centre to one side that is measured: without what leaves the frame
+/// and without the pixels that have no value, if it ends in them. May be 0.
+double measured_px(const Trail& t, const Scene& scene, double side) {
+  constexpr double step_px = 0.25;
+  double way_px = std::min(t.length_px / 2, way_to_edge_px(t, scene, side));
+  while (way_px > 0 && !has_values_at(scene, t, side * way_px)) way_px -= step_px;
+  return std::max(way_px, 0.0);
+}
+
+/// Puts an end outside the frame on its edge, and one among pixels without a value on theirs: no
+/// pixel measures what is beyond, so that length and light would have no bound. The measured part
+/// stays as it is; errors are those after a measurement of that end, by the gain of a Kalman
+/// filter.
 void end_at_edge(TrailFit& fit, const Scene& scene, double side) {
   Trail& t = fit.trails[0];
-  const double way_px = way_to_edge_px(t, scene, side) - t.length_px / 2;
+  const double way_px = measured_px(t, scene, side) - t.length_px / 2;
   if (!(way_px < 0)) return;
   constexpr double edge_px2 = 0.3 * 0.3;
   const auto n = std::size_t(fit.parameters);
@@ -88,6 +98,18 @@ void end_at_edge(TrailFit& fit, const Scene& scene, double side) {
   t = part;
   t.flux_e *= share;
   t.slope *= share;
+}
+
+/// A start without the ends that lie among pixels without a value.
+Trail measured_part(Trail t, const Scene& scene) {
+  if (!scene.unusable) return t;
+  for (const double side : {-1.0, 1.0}) {
+    const double way_px = measured_px(t, scene, side) - t.length_px / 2, whole_px = t.length_px;
+    if (!(way_px < 0)) continue;
+    t = changed(t, side < 0 ? TrailChange::first_end : TrailChange::last_end, way_px);
+    t.flux_e *= t.length_px / whole_px;
+  }
+  return t;
 }
 
 bool are_same(const std::vector<FitPixel>& a, const std::vector<FitPixel>& b) {
@@ -157,6 +179,19 @@ bool plausible(const Scene& scene, const Trail& t) {
          t.x_px > -1 && t.y_px > -1 && t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
 }
 
+bool has_values_at(const Scene& scene, const Trail& t, double along_px) {
+  if (!scene.unusable) return true;
+  const auto [x, y] = t.at(along_px);
+  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+  const double beside_px = 1.5 * scene.sigma_px;
+  for (const double off_px : {0.0, -beside_px, beside_px}) {
+    const int px = std::clamp(int(std::lround(x - off_px * s)), 0, scene.counts.columns - 1);
+    const int py = std::clamp(int(std::lround(y + off_px * c)), 0, scene.counts.rows - 1);
+    if (scene.has_value(px, py)) return true;
+  }
+  return false;
+}
+
 Around::Around(const Trail& trail, double margin_px)
     : trail_(trail),
       margin_px_(margin_px),
@@ -181,7 +216,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
                 : start.length_px >= bent_from_px   ? unsigned(trail_bent_line)
                 : start.length_px >= sloped_from_px ? unsigned(trail_line | trail_slope)
                                                     : unsigned(trail_line);
-  Trail trail = start;
+  Trail trail = streak ? measured_part(start, scene) : start;
   if (!streak) trail.length_px = 0.0;
   const PixelPosition middle{start.x_px, start.y_px};
   const double sigma_px = scene.psf.sigma_at(middle);
@@ -230,8 +265,10 @@ void hold_ends_at_edge(const Scene& scene, Source& source) {
 
 void set_flags(const Scene& scene, const Trail& trail, Source& source) {
   const double edge = 2 * scene.psf.sigma_at({trail.x_px, trail.y_px});
-  for (const double half : {-trail.length_px / 2, trail.length_px / 2}) {
+  for (const double side : {-1.0, 1.0}) {
+    const double half = side * trail.length_px / 2;
     const auto [x, y] = trail.at(half);
+    if (source.streak && !has_values_at(scene, trail, half + side * edge)) source.at_edge = true;
     if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||
         y > scene.counts.rows - 1 - edge)
       source.at_edge = true;

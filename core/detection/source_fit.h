@@ -53,10 +53,16 @@ bool plausible(const Scene& scene, const Trail& trail);
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
                                  double model_error, bool draft = false, unsigned free = 0);
 
-/// Puts ends of a fitted streak that are beyond the frame on its edge.
+/// Whether pixels across a trail have values at a place along it, in the frame or the nearest to
+/// it.
+bool has_values_at(const Scene& scene, const Trail& trail, double along_px);
+
+/// Puts ends of a fitted streak that are beyond the frame, or among pixels without a value, on the
+/// edge.
 void hold_ends_at_edge(const Scene& scene, Source& source);
 
-/// Flags a source by where its trail is: at the frame's edge, saturated.
+/// Flags a source by where its trail is: at the frame's edge or that of pixels without a value,
+/// saturated.
 void set_flags(const Scene& scene, const Trail& trail, Source& source);
 
 }  // namespace dmise

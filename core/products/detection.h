@@ -75,7 +75,7 @@ struct Detection {
   // end 1.
   double position_angle_rad = 0.0;
   bool saturated = false;  // a pixel is at full well or at the ADC's limit
-  bool at_edge = false;    // touches the frame's edge: an end is missing
+  bool at_edge = false;    // touches the frame's edge, or pixels without a value: an end is missing
   bool star_like = false;  // has the shape and direction of a star's trail
   bool excluded = false;   // Sun, Moon or limb was nearer to the axis than the camera allows
 

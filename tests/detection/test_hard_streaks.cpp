@@ -49,6 +49,41 @@ TEST(HardStreaks, ThatLeaveTheFrameEndAtItsEdge) {
   expect_part_inside({250, 490, 240, 1.2, 240 * 500.0});
 }
 
+// From a border at any angle on, pixels have no value: sky stands in for them. Streaks of an SNR of
+// 25 to 90 are found up to there, with the light and the SNR of what is seen.
+TEST(HardStreaks, ThatRunIntoPixelsWithoutAValueEndAtThem) {
+  Threads threads(2);
+  for (const double e_per_px : {200.0, 500.0})
+    for (const double angle : {0.05, 0.4, 0.8, 1.3, 2.2})
+      for (const double seen_px : {70.0, 110.0, 160.0})
+        for (const double turn : {pi / 2, pi / 3}) {  // of the border to the streak
+          const TrueStreak whole{250, 250, 200, angle, 200 * e_per_px};
+          const double border_px = seen_px - whole.length_px / 2;
+          const PixelPosition middle = whole.at(border_px - seen_px / 2);
+          const TrueStreak seen{middle.x_px, middle.y_px, seen_px, angle, seen_px * e_per_px};
+          HardFrame scene(500, 500, 31);
+          scene.add(whole);
+          PixelMask unusable(500, 500);
+          const PixelPosition border = whole.at(border_px);
+          scene.change([&](double e, int x, int y) {
+            const double beyond = (x - border.x_px) * std::sin(angle + turn) -
+                                  (y - border.y_px) * std::cos(angle + turn);
+            unusable.at(x, y) = beyond > 0;
+            return beyond > 0 ? HardFrame::sky_e : e;
+          });
+          SCOPED_TRACE(testing::Message() << e_per_px << " e-/px, " << angle << " rad, " << seen_px
+                                          << " px, border " << turn);
+          const auto found =
+              detect(scene.frame.expose(), scene.frame.header(), &unusable, threads).detections;
+          ASSERT_EQ(found.size(), 1u);
+          expect_is(found[0], seen, {.end_px = e_per_px > 300 ? 3.0 : 8.0});
+          EXPECT_TRUE(found[0].at_edge);
+          // Of the matched filter, of a PSF of 0.8 px in noise of 40 e-.
+          const double ideal = e_per_px * std::sqrt(seen_px / (2 * 0.8 * std::sqrt(pi))) / 40;
+          EXPECT_GT(found[0].snr, 0.5 * ideal);
+        }
+}
+
 // Six flashes of 20 px with 30 px of nothing between them.
 TEST(HardStreaks, ABlinkingOneIsFoundFromItsFirstFlashToItsLast) {
   HardFrame scene(600, 600, 7);
