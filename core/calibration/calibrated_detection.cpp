@@ -36,14 +36,25 @@ void remove_found(const UnknownFacts& unknown, FrameNotes& notes) {
       });
 }
 
-/// Notes what the catalogue would need; the last one is found by a solution.
-void note_unused_catalogue(const UnknownFacts& unknown, FrameNotes& notes) {
-  if (CatalogueSky::can_expect(unknown)) return;
-  const char* lacks = unknown.has(FrameFact::time)       ? "a time"
-                      : unknown.has(FrameFact::exposure) ? "an exposure time"
-                      : unknown.has(FrameFact::pointing) ? "a pointing"
-                                                         : "a zero point";
-  notes.missing.push_back(std::string("stars: the catalogue is not used without ") + lacks);
+/// Notes why the catalogue is not used, if so: what it would need, of which the last is found by a
+/// solution, or that the frame does not show its stars.
+void note_unused_catalogue(const UnknownFacts& unknown, const DetectionResult& detection,
+                           FrameNotes& notes) {
+  const std::string not_used = "stars: the catalogue is not used";
+  const StarsSeen& stars = detection.stars;
+  if (!CatalogueSky::can_expect(unknown)) {
+    const char* lacks = unknown.has(FrameFact::time)       ? "a time"
+                        : unknown.has(FrameFact::exposure) ? "an exposure time"
+                        : unknown.has(FrameFact::pointing) ? "a pointing"
+                                                           : "a zero point";
+    notes.missing.push_back(not_used + " without " + lacks);
+  } else if (!detection.report.detection_off && !stars.agree()) {
+    notes.missing.push_back(not_used + (stars.expected == 0
+                                            ? ": none of its stars is expected to be seen"
+                                            : ": " + std::to_string(stars.found) + " of " +
+                                                  std::to_string(stars.expected) +
+                                                  " stars are where they are expected"));
+  }
 }
 
 /// Notes that there is no plate near a header's pointing.
@@ -77,7 +88,7 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Thread
     const bool has_hint = !unknown.has(FrameFact::pointing) || (o.ra_rad && o.dec_rad);
     const bool may_be_solved = map_ && has_hint && !unknown.has(FrameFact::time);
     if (!may_be_solved || (CatalogueSky::can_expect(unknown) && !is_wrong(result.detection))) {
-      if (map_) note_unused_catalogue(unknown, result.notes);
+      if (map_) note_unused_catalogue(unknown, result.detection, result.notes);
       return result;
     }
   }
@@ -95,7 +106,7 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Thread
     after_solution(frame.counts, result.header);
   result.detection = detected_by(result.header);
   remove_found(result.header.unknown, result.notes);
-  note_unused_catalogue(result.header.unknown, result.notes);
+  note_unused_catalogue(result.header.unknown, result.detection, result.notes);
   return result;
 }
 

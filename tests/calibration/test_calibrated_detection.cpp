@@ -95,6 +95,31 @@ TEST_F(CalibratedDetection, NotesWhyTheCatalogueIsNotUsed) {
   }
 }
 
+// By the zero point none is bright enough; and clouds hide them.
+TEST_F(CalibratedDetection, NotesThatItsStarsAreNotSeen) {
+  for (const double zero_point_mag : {-20.0, 0.0, 5.0}) {
+    FrameHeader header = truth;
+    header.zero_point_mag = zero_point_mag;
+    const auto result = CalibratedDetector(map).detect({drawn(1.0), header}, threads);
+    EXPECT_EQ(result.detection.stars.expected, 0);
+    EXPECT_EQ(noted(result.notes.missing, "stars: "),
+              "stars: the catalogue is not used: none of its stars is expected to be seen");
+  }
+  const auto clouds = CalibratedDetector(map).detect({drawn(0.0), truth}, threads);
+  const StarsSeen& few = clouds.detection.stars;  // by noise
+  EXPECT_EQ(noted(clouds.notes.missing, "stars: "),
+            "stars: the catalogue is not used: " + std::to_string(few.found) + " of " +
+                std::to_string(few.expected) + " stars are where they are expected");
+  const auto seen = CalibratedDetector(map).detect({drawn(1.0), truth}, threads);
+  EXPECT_EQ(noted(seen.notes.missing, "stars: "), "");
+  FrameHeader closed = truth;
+  closed.exclusion.action = ExclusionAction::close_shutter;
+  closed.excluded.sun = true;
+  EXPECT_EQ(
+      noted(CalibratedDetector(map).detect({drawn(0.0), closed}, threads).notes.missing, "stars: "),
+      "");
+}
+
 TEST_F(CalibratedDetection, DropsTheNotesOfWhatASolutionFinds) {
   FrameHeader header = truth;
   header.unknown.add(FrameFact::zero_point);
