@@ -106,7 +106,7 @@ std::int64_t size_by(const std::string& json, const std::string& name) {
   const std::size_t named = json.find("\"name\":\"" + name + "\"");
   const std::size_t at = json.find(field, named);
   if (named == std::string::npos || at == std::string::npos) return -1;
-  return std::atoll(json.c_str() + at + field.size());
+  return std::strtoll(json.c_str() + at + field.size(), nullptr, 10);
 }
 
 /// A file that is written atomically, with its digest and size.

@@ -14,14 +14,12 @@ namespace {
 constexpr int cell_px = 48;
 constexpr int least_pixels = 200;  // of a cell, that are not hidden
 constexpr double least_scatter = 0.85;
-constexpr int clipped_share = 16;  // 1 / share of a cell's pixels, from which on it is no sky
 
 /// What is not hidden in a cell, by quantiles: a streak does not count. Both scatters are 1 and the
 /// middle 0 of cells with too few pixels.
 struct Level {
   double middle = 0.0, below = 1.0, above = 1.0;
   float hidden = 0.0f;
-  bool clipped = false;  // much of it, by a column or a body that is no sky
 };
 
 Level level_of(const FilteredFrame& frame, int x0, int y0, const BitMask* lit) {
@@ -65,32 +63,30 @@ Level level_of(const FilteredFrame& frame, int x0, int y0, const BitMask* lit) {
   };
   const double middle = quantile(0.5);
   return {middle, (middle - quantile(0.1587)) / FilteredFrame::steps,
-          (quantile(0.8413) - middle) / FilteredFrame::steps, hidden,
-          clipped_share * (histogram.front() + histogram[2 * most]) > count};
+          (quantile(0.8413) - middle) / FilteredFrame::steps, hidden};
 }
 
 /// Cells by what is in them and their neighbours: the median of the middles, so that a streak moves
 /// none, and the mean of the scatters. That above the middle counts if it is larger: faint stars
-/// only add light. Clipped cells have no scatter of the sky, unless all around are clipped.
+/// only add light.
 std::vector<FilteredFrame::Cell> smoothed(const std::vector<Level>& levels, int across, int down) {
   constexpr double sure = 0.02;  // difference that noise makes
   std::vector<FilteredFrame::Cell> mesh;
   for (int j = 0; j < down; ++j)
     for (int i = 0; i < across; ++i) {
       std::vector<double> middles;
-      double below = 0.0, above = 0.0, n = 0.0;
-      const auto add = [&](const Level& l) { below += l.below, above += l.above, n += 1; };
+      double below = 0.0, above = 0.0;
       for (int y = std::max(0, j - 1); y <= std::min(down - 1, j + 1); ++y)
         for (int x = std::max(0, i - 1); x <= std::min(across - 1, i + 1); ++x) {
           const Level& l = levels[std::size_t(y) * std::size_t(across) + std::size_t(x)];
           middles.push_back(l.middle);
-          if (!l.clipped) add(l);
+          below += l.below;
+          above += l.above;
         }
-      const Level& own = levels[std::size_t(j) * std::size_t(across) + std::size_t(i)];
-      if (n == 0.0) add(own);
+      const auto n = double(middles.size());
       const double scatter = std::max(0.5 * (below + above) / n, above / n - sure);
       mesh.push_back({float(median_of(std::move(middles))), float(std::max(least_scatter, scatter)),
-                      own.hidden});
+                      levels[std::size_t(j) * std::size_t(across) + std::size_t(i)].hidden});
     }
   return mesh;
 }
