@@ -105,12 +105,13 @@ void write_sensors(JsonWriter& json, const SurveyReport& report, const NightSumm
 
 void write_model(JsonWriter& json, const DetectionModel& model) {
   json.key("detection").begin_object().field("share", model.share);
+  json.field("share_of_points", model.share_points);
   json.field("share_among_round_stars", model.share_round);
-  const auto write = [&](const char* list, const auto& nodes) {
+  const auto write = [&](const char* list, const auto& nodes, const char* px = "length_px") {
     json.key(list).begin_array();
     for (const auto& node : nodes)
       json.begin_object()
-          .field("length_px", node.px)
+          .field(px, node.px)
           .field("half_snr", node.half_snr)
           .field("spread", node.spread)
           .end_object();
@@ -119,6 +120,7 @@ void write_model(JsonWriter& json, const DetectionModel& model) {
   write("among_trailed_stars", model.trailed);
   write("among_round_stars", model.round);
   write("among_round_stars_that_are_known", model.round_known);
+  write("by_shape", model.shape, "difference_px");
   json.end_object();
 }
 

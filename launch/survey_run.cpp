@@ -60,6 +60,7 @@ std::string head_of(const Scenario& scenario, const SensorConfig& sensor,
   add(sensor.mask_deg);
   for (const double km : command.shells_km) add(km);
   add(model.share);
+  add(model.share_points);
   add(model.share_round);
   for (const auto* nodes : model.nodes())
     for (const auto& node : *nodes) {

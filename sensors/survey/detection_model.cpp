@@ -13,8 +13,23 @@ namespace {
 constexpr double most_probability = 1.0 - 1e-9;
 
 struct Curve {
-  double half = 1.0, spread = 1.0, share = 1.0;
+  double half = 1.0, spread = 1.0;
+
+  double sigmas(double snr) const { return std::log(snr / half) / spread; }
 };
+
+/// Where `share` is 0 `a`, where it is 1 `b`.
+Curve mixed(const Curve& a, const Curve& b, double share) {
+  return {std::pow(a.half, 1.0 - share) * std::pow(b.half, share),
+          a.spread + share * (b.spread - a.spread)};
+}
+
+/// Share of the way from `low` to `high`, [0, 1].
+double way(double low, double high, double x) {
+  return std::clamp((x - low) / (high - low), 0.0, 1.0);
+}
+
+double log_px(double px) { return std::log2(1.0 + px); }
 
 Curve curve_at(const std::vector<DetectionModel::Node>& nodes, double px) {
   const auto after = std::upper_bound(nodes.begin(), nodes.end(), px,
@@ -22,32 +37,30 @@ Curve curve_at(const std::vector<DetectionModel::Node>& nodes, double px) {
   if (after == nodes.begin()) return {nodes.front().half_snr, nodes.front().spread};
   if (after == nodes.end()) return {nodes.back().half_snr, nodes.back().spread};
   const auto& a = *(after - 1);
-  const double x = std::log2(1.0 + px), x0 = std::log2(1.0 + a.px);
-  const double share = (x - x0) / (std::log2(1.0 + after->px) - x0);
-  return {a.half_snr * std::pow(after->half_snr / a.half_snr, share),
-          a.spread + share * (after->spread - a.spread)};
+  return mixed({a.half_snr, a.spread}, {after->half_snr, after->spread},
+               way(log_px(a.px), log_px(after->px), log_px(px)));
 }
 
-/// The length that a trail counts as among stars that trail: where they trail by more than where
-/// detection was measured, the more it differs from them the longer.
-double length_among_trails_px(const ExpectedTrail& trail) {
-  constexpr double longer_by = 4.0;  // for each pixel of a longer star's trail
-  if (trail.unlike_px < detection_limits::least_difference_px) return trail.length_px;
-  const double beyond_px = trail.star_px - DetectionModel::usual_star_px;
-  return std::max(
-      {trail.length_px, trail.unlike_px - DetectionModel::usual_star_px, longer_by * beyond_px});
+double among_trails(const ExpectedTrail& trail) {
+  return way(DetectionModel::round_px, DetectionModel::trailed_px, trail.star_px);
 }
 
+/// By the trail's length.
 Curve curve_of(const DetectionModel& model, const ExpectedTrail& trail) {
   using M = DetectionModel;
-  const Curve among_trails = curve_at(model.trailed, length_among_trails_px(trail));
+  const Curve usual = curve_at(model.trailed, trail.length_px);
+  const Curve among_long = curve_at(model.trailed, std::max(trail.length_px, M::row_px));
   const Curve among_round =
       curve_at(trail.star_known ? model.round_known : model.round, trail.length_px);
-  const double share =
-      std::clamp((trail.star_px - M::round_px) / (M::trailed_px - M::round_px), 0.0, 1.0);
-  return {std::pow(among_trails.half, share) * std::pow(among_round.half, 1.0 - share),
-          share * among_trails.spread + (1.0 - share) * among_round.spread,
-          share * model.share + (1.0 - share) * model.share_round};
+  return mixed(among_round, mixed(usual, among_long, way(M::trailed_px, M::long_px, trail.star_px)),
+               among_trails(trail));
+}
+
+double share_of(const DetectionModel& model, const ExpectedTrail& trail) {
+  const double longer = way(log_px(DetectionModel::point_px), log_px(DetectionModel::row_px),
+                            log_px(trail.length_px));
+  const double share = std::lerp(model.share_points, model.share, longer);
+  return std::lerp(model.share_round, share, among_trails(trail));
 }
 
 // Standard deviations of the prior about the start: of ln half, ln spread and the share.
@@ -70,6 +83,7 @@ double badness(const DetectionModel& model, const DetectionModel& start,
              0.5 * square(std::log(m.spread / s.spread) / prior_spread);
     }
   return sum + 0.5 * square((model.share - start.share) / prior_share) +
+         0.5 * square((model.share_points - start.share_points) / prior_share) +
          0.5 * square((model.share_round - start.share_round) / prior_share);
 }
 
@@ -81,11 +95,29 @@ double least_of(double low, double high, const Function& of) {
 
 }  // namespace
 
+double shape_difference_px(const ExpectedTrail& trail) {
+  const auto square = [](double x) { return x * x; };
+  const double length = trail.length_px, star = trail.star_px;
+  // Second moments of a trail are its vector's dyad / 12, so their difference has the norm of the
+  // square of a length. Trails have no direction.
+  const double product = std::min(
+      0.5 * std::abs(square(length) + square(star) - square(trail.unlike_px)), length * star);
+  const double moments_px = std::sqrt(std::sqrt(
+      std::max(0.0, square(square(length)) + square(square(star)) - 2.0 * square(product))));
+  // What is almost a point is compared with a star as one.
+  constexpr double as_point_px = 0.8, falls_by = 2.0;
+  const double as_point = star - falls_by * std::max(0.0, length - as_point_px);
+  constexpr double least_px = detection_limits::least_difference_px, steepness = 4.0;
+  const double allowed_px = least_px + steepness * (std::max(trail.unlike_px, as_point) - least_px);
+  return std::max(0.0, std::min(moments_px, allowed_px));
+}
+
 double detection_probability(const DetectionModel& model, const ExpectedTrail& trail) {
   if (!(trail.snr > 0.0)) return 0.0;
-  const Curve curve = curve_of(model, trail);
-  const double sigmas = std::log(trail.snr / curve.half) / curve.spread;
-  return std::min(most_probability, curve.share * theory_of_detection(sigmas, 0.0));
+  double sigmas = curve_of(model, trail).sigmas(trail.snr);
+  if (!trail.star_known && !model.shape.empty())
+    sigmas = std::min(sigmas, curve_at(model.shape, shape_difference_px(trail)).sigmas(trail.snr));
+  return std::min(most_probability, share_of(model, trail) * theory_of_detection(sigmas, 0.0));
 }
 
 DetectionModel fitted_detection_model(const DetectionModel& start,
@@ -108,7 +140,7 @@ DetectionModel fitted_detection_model(const DetectionModel& start,
           return badness(model, start, telling);
         });
       }
-    for (double* share : {&model.share, &model.share_round})
+    for (double* share : {&model.share, &model.share_points, &model.share_round})
       *share = least_of(least_share, 1.0, [&](double value) {
         *share = value;
         return badness(model, start, telling);

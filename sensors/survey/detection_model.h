@@ -15,8 +15,9 @@ struct ExpectedTrail {
 };
 
 /// Probability that the chain detects a trail in a frame: share x Q(ln(half / SNR) / spread), where
-/// half and spread depend on its length and on what stars look like. Between nodes they are
-/// interpolated in log2(1 + px), beyond them they are those of the ends.
+/// half and spread depend on its length and on what stars look like. Among stars that trail, a
+/// second pair depends on how far the trail's shape is from a star's; the lesser Q counts. Between
+/// nodes they are interpolated in log2(1 + px), beyond them they are those of the ends.
 struct DetectionModel {
   struct Node {
     double px = 0.0;
@@ -26,25 +27,35 @@ struct DetectionModel {
     bool operator==(const Node&) const = default;
   };
   using Nodes = std::vector<Node>;  // ascending, at least one
-  // Among stars that trail by more than `trailed_px`, by length. Measured where stars trail by up
-  // to `usual_star_px`: what differs from longer ones by more counts as that much longer.
+  // Among stars that trail by more than `trailed_px`, by length. No row of stars that trail by more
+  // than `long_px` looks like a short trail: there, trails are found as those of `row_px` or more.
   Nodes trailed;
   // Among stars that trail by less than `round_px`: a short trail looks like a few of them in a row
   // unless the catalogue would have such stars. In between both are mixed.
   Nodes round, round_known;
-  // Of bright sources that are found, (0, 1]: among stars that trail, and among round ones.
-  double share = 1.0, share_round = 1.0;
+  // By `shape_difference_px`, unless the catalogue would have such stars; none: it does not matter.
+  Nodes shape;
+  // Of bright sources that are found, (0, 1]: trails of `row_px` or more and points, among stars
+  // that trail, and anything among round ones.
+  double share = 1.0, share_points = 1.0, share_round = 1.0;
 
-  static constexpr double round_px = 0.4, trailed_px = 1.0, usual_star_px = 2.4;
+  static constexpr double round_px = 0.4, trailed_px = 2.4, long_px = 6.0;  // of stars' trails
+  static constexpr double point_px = 1.0, row_px = 14.0;                    // of objects' trails
   /// All nodes.
-  std::array<Nodes*, 3> nodes() { return {&trailed, &round, &round_known}; }
-  std::array<const Nodes*, 3> nodes() const { return {&trailed, &round, &round_known}; }
+  std::array<Nodes*, 4> nodes() { return {&trailed, &round, &round_known, &shape}; }
+  std::array<const Nodes*, 4> nodes() const { return {&trailed, &round, &round_known, &shape}; }
 
   bool operator==(const DetectionModel&) const = default;
 };
 
 /// The model with what was measured in rendered frames (docs/models/survey.md).
 const DetectionModel& measured_detection_model();
+
+/// How far the shape of a trail is from that of a star's: the length of the trail whose second
+/// moments are the difference of both (a point's is the star's length), but at most what
+/// 1.5 px + 4 (difference of the trails - 1.5 px) gives, as the chain takes what differs by less
+/// than `least_difference_px` for a star. >= 0.
+double shape_difference_px(const ExpectedTrail& trail);
 
 /// Returns a probability in [0, 1) for any SNR >= 0 and lengths >= 0.
 double detection_probability(const DetectionModel& model, const ExpectedTrail& trail);
@@ -58,7 +69,7 @@ struct DetectionSample {
   bool found = false;
 };
 
-/// Fits `half_snr`, `spread` and both shares of a model with the nodes of `start` to samples by
+/// Fits `half_snr`, `spread` and all shares of a model with the nodes of `start` to samples by
 /// maximum likelihood. A weak prior keeps what samples do not tell as it is in `start`. The result
 /// does not depend on the order of samples of equal values.
 DetectionModel fitted_detection_model(const DetectionModel& start,

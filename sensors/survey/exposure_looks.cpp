@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/detection/catalogue_sky.h"
+#include "core/detection/detection_limits.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/score/matched_filter.h"
@@ -141,7 +142,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     return times.seconds() *
            std::pow(10.0, 0.4 * (zero_point_mag - dimmed_mag - complete_to_v_mag_));
   };
-  // No pixel has less noise: what is not detected with it needs no sky.
+  // No pixel has less noise: what is too faint with it needs no sky.
   const double least_noise_e = noise_.noise_e(0.0);
 
   std::vector<ObjectSample> samples;
@@ -178,7 +179,8 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     };
     Look look = look_at(trail);
     look.snr = matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px_});
-    const bool telling = detection_probability(scene_.model(), look.trail()) >= least_probability;
+    const bool telling = look.snr >= detection_limits::least_snr ||
+                         detection_probability(scene_.model(), look.trail()) >= least_probability;
     if (least < abrupt_ratio * most && telling) {
       samples.clear();
       for (std::size_t k = 0; k < many_samples; ++k)

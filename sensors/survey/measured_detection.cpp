@@ -3,8 +3,9 @@
 namespace dmise {
 
 const DetectionModel& measured_detection_model() {
-  static const DetectionModel model{.trailed = {{0.0, 19.95, 0.465},
-                                                {4.0, 35.64, 0.530},
+  static const DetectionModel model{.trailed = {{1.0, 7.30, 0.240},
+                                                {2.0, 17.80, 0.350},
+                                                {4.0, 16.37, 0.500},
                                                 {6.5, 21.41, 0.608},
                                                 {10.0, 19.64, 0.686},
                                                 {14.0, 10.12, 0.355},
@@ -24,7 +25,17 @@ const DetectionModel& measured_detection_model() {
                                                     {20.0, 8.70, 0.275},
                                                     {28.0, 7.88, 0.266},
                                                     {50.0, 11.86, 0.299}},
+                                    .shape = {{0.0, 300.0, 0.353},
+                                              {1.5, 55.69, 0.386},
+                                              {1.8, 23.50, 0.323},
+                                              {2.1, 20.95, 0.239},
+                                              {2.5, 15.54, 0.337},
+                                              {3.0, 11.18, 0.287},
+                                              {4.0, 7.97, 0.210},
+                                              {5.0, 6.75, 0.241},
+                                              {10.0, 3.00, 0.300}},
                                     .share = 0.9796,
+                                    .share_points = 0.887,
                                     .share_round = 0.995};
   return model;
 }
