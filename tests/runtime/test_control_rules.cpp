@@ -42,8 +42,17 @@ TEST(ControlRules, NumbersAreThoseOfARun) {
   EXPECT_TRUE(fault_of(request));
 }
 
+TEST(ControlRules, ACommandIsOneThatThereIs) {
+  v1::NodeMessage message;
+  for (int action = -1; action <= 77; ++action) {
+    message.mutable_control()->set_action(v1::Control::Action(action));
+    EXPECT_EQ(fault_of(message).has_value(), action < 1 || action > 6) << action;
+  }
+}
+
 TEST(ControlRules, APaceIsAFactor) {
   v1::NodeMessage message;
+  message.mutable_control()->set_action(v1::Control::ACTION_PACE);
   for (const double factor : {0.0, 0.1, 1e6}) {
     message.mutable_control()->set_factor(factor);
     EXPECT_FALSE(fault_of(message)) << factor;
