@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
 
 #include "core/base/error.h"
@@ -18,6 +17,7 @@
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/notes.h"
 #include "launch/star_index_files.h"
 
@@ -215,8 +215,7 @@ void add_catalogue_command(CLI::App& app) {
       ->check(CLI::Range(1, 1000000));
   synth->add_option("--seed", synthetic->seed, "seed of the random numbers")
       ->capture_default_str()
-      ->check(
-          CLI::Range(std::uint64_t{0}, std::uint64_t(std::numeric_limits<std::int64_t>::max())));
+      ->check(seed_range());
   synth
       ->add_option("--format", synthetic->format,
                    "3le, or omm (CSV); default omm above 339999 objects, the limit of a TLE")

@@ -246,8 +246,7 @@ void add_visible_command(CLI::App& app) {
   command
       ->add_option("--night", o->night_deg,
                    "only passes during which, for a part, the Sun is below this elevation at the "
-                   "site [deg]; "
-                   "-6 without a value; passes in orbit are all kept")
+                   "site [deg]; -6 without a value; passes in orbit are all kept")
       ->expected(0, 1)
       ->default_str("-6")
       ->check(number_between(-90.0, 90.0));

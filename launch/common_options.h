@@ -26,12 +26,15 @@ inline CLI::Option* add_threads_option(CLI::App& command, int& threads,
       ->check(CLI::Range(1, 256));
 }
 
+/// The range of a scenario's `simulation.seed`.
+inline CLI::Range seed_range() {
+  return {std::uint64_t{0}, std::uint64_t(std::numeric_limits<std::int64_t>::max())};
+}
+
 /// Adds `--seed`, within the range of a scenario's `simulation.seed`.
 inline CLI::Option* add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed,
                                     const std::string& what) {
-  return command.add_option("--seed", seed, what)
-      ->check(
-          CLI::Range(std::uint64_t{0}, std::uint64_t(std::numeric_limits<std::int64_t>::max())));
+  return command.add_option("--seed", seed, what)->check(seed_range());
 }
 
 /// Adds `name`, the address of the time-master.

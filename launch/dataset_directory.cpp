@@ -100,12 +100,14 @@ std::int64_t size_of(const std::string& path) {
   return missing ? -1 : std::int64_t(size);
 }
 
-/// The size that a file has by the JSON of `DigestedFile`; -1 if the JSON does not have it.
-std::int64_t size_by(const std::string& json, const std::string& name) {
+/// The size that a file has by the JSON of `DigestedFile`, looked for from
+/// `from` on, which is moved behind it; -1 if the JSON does not have it.
+std::int64_t size_by(const std::string& json, const std::string& name, std::size_t& from) {
   constexpr std::string_view field = "\"bytes\":";
-  const std::size_t named = json.find("\"name\":\"" + name + "\"");
+  const std::size_t named = json.find("\"name\":\"" + name + "\"", from);
   const std::size_t at = json.find(field, named);
   if (named == std::string::npos || at == std::string::npos) return -1;
+  from = at;
   return std::strtoll(json.c_str() + at + field.size(), nullptr, 10);
 }
 
@@ -145,10 +147,7 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
   const std::string lock_path = path_ + "/.dataset-lock";
   // Without a lock, which could not be made in a directory that is only read.
   if (!force && (path_exists(path_ + "/dataset.json") || !path_exists(lock_path))) try {
-      if (content() == Content::same_complete) {
-        require_whole();
-        return false;
-      }
+      if (is_complete()) return false;
     } catch (const ConfigError&) {
       // Another process may have begun meanwhile.
       if (path_exists(path_ + "/dataset.json") || !path_exists(lock_path)) throw;
@@ -156,10 +155,7 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
   lock_.emplace(lock_path);
   const bool alone = lock(force);
   if (force) clear();
-  if (!force && content() == Content::same_complete) {
-    require_whole();
-    return false;
-  }
+  if (!force && is_complete()) return false;
   if (alone) {
     make_directories(path_ + "/parts");
     // First the plan: it tells that the other files are ours.
@@ -242,24 +238,29 @@ void DatasetDirectory::remove_parts() const {
     fs::remove(path_ + "/parts", ignored);  // if it is empty
 }
 
-void DatasetDirectory::require_whole() const {
+bool DatasetDirectory::is_complete() const {
+  if (content() != Content::same_complete) return false;
   const std::string manifest = read_text_file(path_ + "/dataset.json", any_size);
   std::vector<std::string> names{"coco.json"};
   for (std::size_t shard = 0; shard < plan_.shards(); ++shard) names.push_back(shard_name(shard));
+  std::size_t read = 0;  // of the manifest, which has the names in this order
   for (const std::string& name : names) {
-    const std::int64_t size = size_of(path_ + "/" + name), wanted = size_by(manifest, name);
+    const std::int64_t size = size_of(path_ + "/" + name), wanted = size_by(manifest, name, read);
     if (size == wanted) continue;
     throw ConfigError(path_ + ": " + name + " " +
                       (size < 0 ? "is missing" : "has " + std::to_string(size) + " bytes") +
                       ", by dataset.json it has " + std::to_string(wanted) +
                       "; --force makes all anew");
   }
+  return true;
 }
 
 bool DatasetDirectory::has_shard(std::size_t shard) const {
   const std::string json = part(shard_name(shard, ".json"));
   const std::int64_t size = size_of(path_ + "/" + shard_name(shard));
-  return size >= 0 && path_exists(json) && size == size_by(read_text_file(json), shard_name(shard));
+  std::size_t read = 0;
+  return size >= 0 && path_exists(json) &&
+         size == size_by(read_text_file(json), shard_name(shard), read);
 }
 
 bool DatasetDirectory::has_sample(std::uint64_t seed) const {

@@ -71,8 +71,9 @@ class DatasetDirectory {
   void require_tasks(const DatasetTask& task) const;
   void clear() const;
   void remove_parts() const;
-  /// Throws `ConfigError` unless all files of a complete data set have the sizes of its manifest.
-  void require_whole() const;
+  /// Throws as `content`, and `ConfigError` unless all files of a complete data set have the sizes
+  /// of its manifest.
+  bool is_complete() const;
   std::string lines_of(const std::string& part_name) const;
   std::string write_coco() const;
 

@@ -187,18 +187,19 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
               false);
 }
 
-/// Brings the field across the columns to `field_rad`, from the focal length of a lens whose
-/// distortion is radial alone, and leaves that if it is right.
-void fit_focal_length(Optics& optics, double field_rad) {
+/// Changes the focal length, right for radial distortion alone, so that the field across the
+/// columns is `field_rad`. Returns whether the lens images such a field.
+bool fit_focal_length(Optics& optics, double field_rad) {
   const auto too_wide = [&] {
     return field_across_rad(optics, optics.columns / 2.0, 0.0) - field_rad;
   };
-  if (std::abs(too_wide()) <= 1e-9 * field_rad) return;
+  if (std::abs(too_wide()) <= 1e-9 * field_rad) return true;
   double least = std::log(optics.focal_length_m / 64), most = std::log(optics.focal_length_m * 64);
   for (int halving = 0; halving < 60; ++halving) {
     optics.focal_length_m = std::exp((least + most) / 2);
     (too_wide() > 0.0 ? least : most) = (least + most) / 2;
   }
+  return std::abs(too_wide()) <= 1e-6 * field_rad;
 }
 
 }  // namespace
@@ -296,10 +297,10 @@ Optics read_optics(const YamlValue& value) {
     const double most = std::round(optics.projection.row().widest_field_rad / deg);
     const double field_deg = field->number(Bounds::above(0.0, most));
     const double half_rad = field_deg * deg / 2;
-    if (const auto fold = optics.projection.fold_rad(); fold && half_rad >= *fold)
-      fail_fold(value, *fold);
+    const auto fold = optics.projection.fold_rad();
+    if (fold && half_rad >= *fold) fail_fold(value, *fold);
     optics.focal_length_m = width_m / 2 / optics.projection.height(half_rad);
-    fit_focal_length(optics, field_deg * deg);
+    if (!fit_focal_length(optics, field_deg * deg)) fail_fold(value, fold.value_or(half_rad));
   }
   if (const auto fold = fold_in_frame_rad(optics)) fail_fold(value, *fold);
   optics.aperture_m = map.number("aperture_m");

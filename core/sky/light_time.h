@@ -5,14 +5,15 @@
 
 namespace dmise {
 
-/// Satellites are seen where they were when their light left.
+/// Satellites, Sun and Moon are seen where they were when their light left.
 struct LightTime {
   static constexpr EffectFacts facts{
       "light_time", "objects are seen where they were when the light left",
       "up to 5.2 arcsec; the Sun 20.5", "three iterations of range / c"};
 
-  // No plan leaves it out: it displaces an object along its path alike in every frame, which tracks
-  // do not average out as they do other errors. It costs a microsecond for each object.
+  // It has no cost, so that no plan leaves it out where it displaces something: alike in every
+  // frame along an object's path, which tracks do not average out as they do other errors. It takes
+  // a microsecond for each object.
   static ErrorBound error(int, const PlanFacts& f) { return f.shifted_objects(f.light_time_rad); }
 
   /// `line_m(dt_s)`: from the observer now to the object at now + dt_s. Returns the line along

@@ -8,6 +8,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/sky_config.h"
+#include "core/optics/projection.h"
 
 namespace dmise {
 namespace {
@@ -107,6 +108,25 @@ TEST(OpticsConfig, TheFieldAcrossTheColumnsIsThatOfTheWholeDistortion) {
         }
         EXPECT_NEAR(sum_rad / deg, field_deg, 1e-8 * field_deg) << p2 << " " << k1;
       }
+}
+
+// A field is imaged as it is asked for, or refused: on the row x' = u + 3 p2 u^2 turns back.
+TEST(OpticsConfig, AFieldThatTheDistortionDoesNotImageIsRefused) {
+  int refused = 0;
+  for (const double p2 : {-1.0, -0.3, -0.1, 0.03, 0.1, 0.3, 1.0, 10.0})
+    for (const double field_deg : {1.0, 60.0, 100.0, 150.0}) try {
+        const Optics o = read_optics(
+            YamlValue::parse("columns: 1000\nrows: 2\npixel_pitch_m: 5.0e-6\naperture_m: 1.0e-6\n"
+                             "projection: brown_conrady\nfield_of_view_deg: " +
+                                 formatted("%g\ndistortion: {p2: %g}\n", field_deg, p2),
+                             "camera.yaml"));
+        EXPECT_NEAR(field_across_rad(o, 500, 0) / deg, field_deg, 1e-5 * field_deg) << p2;
+      } catch (const ConfigError& e) {
+        EXPECT_NE(std::string(e.what()).find("the image folds back"), std::string::npos);
+        ++refused;
+      }
+  EXPECT_GT(refused, 8);
+  EXPECT_LT(refused, 28);
 }
 
 // By hand: r - 0.3 r^3 turns back at r = 1 / sqrt(0.9), 46.51 deg.
