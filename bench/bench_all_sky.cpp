@@ -30,7 +30,7 @@
 namespace dmise {
 namespace {
 
-constexpr int repeats = 7;
+constexpr int all_sky_repeats = 7;
 
 double wall_s() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -170,7 +170,7 @@ void measure_tycho2(const std::filesystem::path& directory, bool json) {
   AllSky bright = sky_of("bright", "{catalogue: kstars, faintest_mag: 30}");
   AllSky deep = sky_of("deep", "{catalogue: tycho2, faintest_mag: 30}");
   std::vector<double> bright_s, deep_s, ratio;
-  for (int i = 0; i < repeats; ++i) {
+  for (int i = 0; i < all_sky_repeats; ++i) {
     bright_s.push_back(bright.make());
     deep_s.push_back(deep.make());
     ratio.push_back(deep_s.back() / bright_s.back());
@@ -193,7 +193,7 @@ void measure_tycho2(const std::filesystem::path& directory, bool json) {
 }  // namespace
 
 std::string all_sky_scenario(const std::filesystem::path& directory) {
-  if (find_catalogue("stars.dat").empty()) return "";
+  if (find_catalogue("stars.dat.gz").empty()) return "";
   const std::string path = (directory / "all-sky.yaml").string();
   std::ofstream(path) << scenario_text(catalogue_of_18470(directory), "all-sky");
   return path;
@@ -234,7 +234,7 @@ void measure_all_sky(bool json) {
       stars = frame.report.stars_rendered;
       objects = frame.report.objects_rendered;
     };
-    for (int i = 0; i < repeats; ++i) make();
+    for (int i = 0; i < all_sky_repeats; ++i) make();
     const double s = median(measured.cpu_s);
     print_figure({"all_sky_s", s, "s", "", 0, 0.18, true}, json);
     print_figure({"all_sky_wall_s", median(measured.wall_s), "s"}, json);

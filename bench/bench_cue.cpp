@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/cue_trial.h"
 #include "bench/figure.h"
+#include "tests/support/cue_trial.h"
 
 namespace dmise {
 namespace {

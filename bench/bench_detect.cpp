@@ -29,9 +29,8 @@ constexpr int columns = 3326, rows = 2504;
 unsigned first_seed = 0;
 
 std::shared_ptr<const StarMap> kstars() {
-  const std::string path = find_catalogue("stars.dat");
-  if (path.empty())
-    throw Error("bench detect: stars.dat is not installed; ./dmise setup fetches it");
+  const std::string path = find_catalogue("stars.dat.gz");
+  if (path.empty()) throw Error("bench detect: there are no stars; is DMISE_HOME right?");
   return std::make_shared<const StarMap>(load_star_map(path, ""));
 }
 

@@ -14,6 +14,7 @@
 #include "bench/bench_thrift.h"
 #include "bench/effect_trial.h"
 #include "bench/figure.h"
+#include "bench/whole_field.h"
 #include "core/base/json.h"
 
 namespace dmise {
@@ -22,7 +23,7 @@ namespace {
 struct Options {
   int scenes = 300;
   std::uint64_t seed = 1;
-  int only = 0;
+  int only = 0, fields = 2;
   bool every_level = false, no_thrift = false;
   std::string keep, effect;
 };
@@ -131,7 +132,7 @@ void print_figures(const std::vector<SceneTrial>& trials, bool json) {
   };
   std::vector<double> plan_s, tightness;
   for (const auto& trial : trials) {
-    plan_s.push_back(trial.plan_s);
+    if (trial.plan_s > 0.0) plan_s.push_back(trial.plan_s);
     for (const auto& level : trial.levels)
       for (const auto& kind : error_kinds)
         if (const auto ratio = tightness_of(level, kind)) tightness.push_back(*ratio);
@@ -142,6 +143,19 @@ void print_figures(const std::vector<SceneTrial>& trials, bool json) {
                json);
   print_figure({"bound_tightness", median(tightness), "1", "", 0, 5.0, true}, json);
   print_figure({"plan_ms", 1e3 * median(plan_s), "ms", "", 0, 0.3, true}, json);
+}
+
+/// Whole fields of every shipped camera, numbered after the scenes.
+void try_fields(const std::filesystem::path& directory, Threads& threads, bool json,
+                std::vector<SceneTrial>& trials) {
+  int number = options.scenes;
+  for (const std::string& camera : shipped_cameras())
+    for (int i = 0; i < options.fields; ++i) {
+      const auto place = directory / ("field-" + std::to_string(++number));
+      trials.push_back(try_whole_field(camera, number, options.seed, place, threads));
+      print_faults(trials.back(), json);
+      if (options.keep.empty()) std::filesystem::remove_all(place);
+    }
 }
 
 }  // namespace
@@ -156,6 +170,9 @@ void add_effects_options(CLI::App& app) {
   app.add_flag("--every-level", options.every_level, "also levels that no plan took");
   app.add_option("--effect", options.effect, "only this effect, at each of its levels");
   app.add_flag("--no-thrift", options.no_thrift, "without the time that plans save");
+  app.add_option("--fields", options.fields, "whole fields of each shipped camera; 0: none")
+      ->default_val(2)
+      ->check(CLI::Range(0, 100000));
   app.add_option("--keep", options.keep, "directory for the scenes, to run them otherwise");
 }
 
@@ -184,6 +201,7 @@ int bench_effects(bool json) {
     print_faults(trials.back(), json);
     if (options.keep.empty()) fs::remove_all(place);
   }
+  if (options.only == 0 && options.effect.empty()) try_fields(directory, threads, json, trials);
   if (options.keep.empty()) fs::remove_all(directory);
   if (!trials.empty()) {
     print_table(trials, json);

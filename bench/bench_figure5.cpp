@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "bench/figure.h"
-#include "bench/sightings_one_by_one.h"
 #include "bench/timing.h"
 #include "core/base/units.h"
 #include "core/orbit/catalogue.h"
 #include "core/orbit/synthetic_catalogue.h"
 #include "core/time/iso8601.h"
 #include "core/visibility/sightings.h"
+#include "tests/support/sightings_one_by_one.h"
 
 namespace dmise {
 namespace {

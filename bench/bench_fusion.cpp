@@ -9,16 +9,17 @@
 
 #include "bench/figure.h"
 #include "bench/timing.h"
-#include "bench/tracking_trial.h"
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/tracking/filter.h"
 #include "core/tracking/initial_orbit.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 
 namespace {
 
-constexpr int seeds = 100;
+constexpr int fusion_seeds = 100;
 /// Observations from which the filter's start is fitted: two exposures of three sites.
 constexpr std::size_t started_by = 6;
 
@@ -33,13 +34,13 @@ void bench_triangulation(const ForceModel& forces, bool json) {
   TrialSettings pair;
   pair.sites = 2;
   pair.exposures = 1;
-  for (int seed = 1; seed <= seeds; ++seed) {
+  for (int seed = 1; seed <= fusion_seeds; ++seed) {
     const TrackingTrial trial = tracking_trial(forces, pair, unsigned(seed));
     const auto position = value_of(triangulate(trial.observations), "triangulate");
     const OrbitState truth = value_of(propagate(forces, trial.truth, position.time), "propagate");
     const Eigen::Vector3d error = eigen_of(position.position_m - truth.position_m);
-    squares_m2 += error.squaredNorm() / seeds;
-    sum_nees += error.dot(position.covariance_m2.inverse() * error) / (3 * seeds);
+    squares_m2 += error.squaredNorm() / fusion_seeds;
+    sum_nees += error.dot(position.covariance_m2.inverse() * error) / (3 * fusion_seeds);
   }
   print_figure({"triangulation_m", std::sqrt(squares_m2), "m", "", 0, 50, true}, json);
   print_figure({"triangulation_nees", sum_nees, "1", "", 0, 0, true}, json);
@@ -61,7 +62,7 @@ struct FilterFigures {
 FilterFigures filter_figures(const ForceModel& forces) {
   FilterFigures out;
   int updates = 0;
-  for (int seed = 1; seed <= seeds; ++seed) {
+  for (int seed = 1; seed <= fusion_seeds; ++seed) {
     const TrackingTrial trial = tracking_trial(forces, {}, unsigned(seed));
     OrbitFilter filter = started(forces, trial);
     for (const AngleObservation& seen : std::span(trial.observations).subspan(started_by)) {
@@ -71,9 +72,9 @@ FilterFigures filter_figures(const ForceModel& forces) {
     const OrbitEstimate end = filter.estimate();
     const OrbitState truth = value_of(propagate(forces, trial.truth, end.state.time), "propagate");
     const double error_m = norm(end.state.position_m - truth.position_m);
-    out.squares_m2 += error_m * error_m / seeds;
+    out.squares_m2 += error_m * error_m / fusion_seeds;
     out.worst_m = std::max(out.worst_m, error_m);
-    out.nees += nees(end, truth) / (6 * seeds);
+    out.nees += nees(end, truth) / (6 * fusion_seeds);
     // Both have seen the same: their difference is that of their approximations.
     const BatchFit batch = value_of(fit_orbit(forces, trial.observations, end.state), "fit_orbit");
     out.agreement = std::max(out.agreement, std::sqrt(nees(batch.estimate, end.state) / 6));
@@ -88,7 +89,7 @@ double update_us(const ForceModel& forces, double cadence_s) {
   settings.cadence_s = cadence_s;
   settings.exposures = 10;
   std::vector<double> times_s;
-  for (int seed = 1; seed <= seeds; ++seed) {
+  for (int seed = 1; seed <= fusion_seeds; ++seed) {
     const TrackingTrial trial = tracking_trial(forces, settings, unsigned(seed));
     OrbitFilter filter = started(forces, trial);
     for (std::size_t i = started_by; i < trial.observations.size(); i += 3) {

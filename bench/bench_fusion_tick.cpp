@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "bench/figure.h"
-#include "bench/fusion_trial.h"
 #include "bench/timing.h"
-#include "bench/tracking_trial.h"
 #include "core/base/rng.h"
 #include "core/base/units.h"
 #include "core/fusion/fusion.h"
 #include "core/orbit/synthetic_catalogue.h"
 #include "core/tracking/propagate.h"
+#include "tests/support/fusion_trial.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

@@ -114,7 +114,7 @@ void add_network_options(CLI::App& command) {
 }
 
 int bench_network(bool json) {
-  if (find_catalogue("stars.dat").empty()) return 0;  // without Debian's catalogues
+  if (find_catalogue("stars.dat.gz").empty()) return 0;
   const auto directory =
       std::filesystem::temp_directory_path() / ("dmise-bench-network-" + std::to_string(getpid()));
   NetworkCase network{.sensors = options.sensors,

@@ -63,9 +63,9 @@ void whole_sky(bool json) {
 
 /// Stars of one field for a frame: search, apparent places with refraction, photon rates.
 void stars(bool json) {
-  const std::string path = find_catalogue("stars.dat");
+  const std::string path = find_catalogue("stars.dat.gz");
   if (path.empty()) {
-    std::fprintf(stderr, "bench sky: no stars.dat: the benchmarks of stars are skipped\n");
+    std::fprintf(stderr, "bench sky: no stars: the benchmarks of stars are skipped\n");
     return;
   }
   const StarMap map = load_star_map(path);

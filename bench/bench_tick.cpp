@@ -148,7 +148,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-struct Figure {
+struct TickFigure {
   std::string name;
   double value = 0.0;
   std::string unit;
@@ -157,7 +157,7 @@ struct Figure {
   double target = 0.0;  // of value / anchor_value; 0: none
 };
 
-void print(const Figure& figure, bool json) {
+void print(const TickFigure& figure, bool json) {
   const double ratio = figure.anchor_value > 0 ? figure.value / figure.anchor_value : 0.0;
   const bool met = ratio >= figure.target;
   if (!json) {

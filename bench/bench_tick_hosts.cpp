@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr int repeats = 3;
+constexpr int host_repeats = 3;
 
 struct Cost {
   double messages = 0.0;   // received by the master per tick
@@ -83,13 +83,13 @@ Cost cost_of_tick(int nodes, int hosts, int ticks) {
 /// Medians of several runs.
 Cost median_cost(int nodes, int hosts, int ticks) {
   std::vector<Cost> costs;
-  for (int i = 0; i < repeats; ++i) costs.push_back(cost_of_tick(nodes, hosts, ticks));
+  for (int i = 0; i < host_repeats; ++i) costs.push_back(cost_of_tick(nodes, hosts, ticks));
   Cost median;
   for (double Cost::*figure :
        {&Cost::messages, &Cost::master_us, &Cost::agent_us, &Cost::ticks_per_s}) {
     std::sort(costs.begin(), costs.end(),
               [&](const Cost& a, const Cost& b) { return a.*figure < b.*figure; });
-    median.*figure = costs[repeats / 2].*figure;
+    median.*figure = costs[host_repeats / 2].*figure;
   }
   return median;
 }

@@ -11,9 +11,7 @@
 #include "bench/bench_fusion_tick.h"
 #include "bench/bench_interpolation.h"
 #include "bench/bench_network.h"
-#include "bench/bench_paper.h"
 #include "bench/bench_render.h"
-#include "bench/bench_scaling.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_sky.h"
 #include "bench/bench_stars.h"
@@ -41,11 +39,7 @@ std::vector<Bench> benches() {
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"network", "number of sensor processes that keep up with real time, and their memory",
        bench_network, add_network_options},
-      {"paper", "Table 3 of the DMISE-GHOST paper by 200 seeds, and the sequence of whole frames",
-       bench_paper, add_paper_options},
       {"render", "pictures and light of objects with a shape", bench_render},
-      {"scaling", "cost of 2 to 200 sensor nodes in time-master, broker and links", bench_scaling,
-       add_scaling_options},
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},
       {"sky", "the sky of a frame and the stars of a field", bench_sky},

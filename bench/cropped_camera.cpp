@@ -20,10 +20,10 @@ std::string number(double value) {
 }
 
 /// The keys of a preset's section, whose lines are indented.
-using Section = std::map<std::string, std::string>;
+using KeyValues = std::map<std::string, std::string>;
 
-std::map<std::string, Section> sections_of(const std::string& yaml) {
-  std::map<std::string, Section> sections;
+std::map<std::string, KeyValues> sections_of(const std::string& yaml) {
+  std::map<std::string, KeyValues> sections;
   std::istringstream lines(yaml);
   std::string line, section;
   while (std::getline(lines, line)) {
@@ -37,7 +37,7 @@ std::map<std::string, Section> sections_of(const std::string& yaml) {
   return sections;
 }
 
-std::string flow(const Section& section) {
+std::string flow(const KeyValues& section) {
   std::string text;
   for (const auto& [key, value] : section) text += (text.empty() ? "" : ", ") + key + ": " + value;
   return "{" + text + "}";
@@ -45,7 +45,7 @@ std::string flow(const Section& section) {
 
 /// Gives a preset of a Gaussian point the diffraction of its pupil; one whose pixels are too wide
 /// for it also the jitter of its mount.
-void take_pupil(Section& optics, bool wide_pixels, SceneDice& dice) {
+void take_pupil(KeyValues& optics, bool wide_pixels, SceneDice& dice) {
   optics.erase("psf_fwhm_px");
   optics["psf"] = "diffraction";
   if (wide_pixels) optics["jitter_px"] = number(dice.uniform(0.3, 0.8));
@@ -57,9 +57,9 @@ CroppedCamera cropped_camera(const std::string& name, int side_px, SceneDice& di
   const std::string path = find_preset("cameras", name, "");
   if (path.empty()) throw Error("there is no camera " + name);
   auto sections = sections_of(read_text_file(path, 1u << 20));
-  Section& optics = sections["optics"];
-  Section& detector = sections["detector"];
-  const auto value = [](const Section& s, const char* key, double otherwise) {
+  KeyValues& optics = sections["optics"];
+  KeyValues& detector = sections["detector"];
+  const auto value = [](const KeyValues& s, const char* key, double otherwise) {
     const auto found = s.find(key);
     return found == s.end() ? otherwise : std::stod(found->second);
   };

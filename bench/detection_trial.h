@@ -1,9 +1,9 @@
 #pragma once
 #include <memory>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/catalogue_sky.h"
 #include "core/products/detection.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 

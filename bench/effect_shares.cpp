@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-constexpr int repeats = 5;
+constexpr int share_repeats = 5;
 
 void add_places(const View& view, const StarTable& stars, std::size_t places, EffectTimes& times) {
   constexpr std::size_t most = 1024;
@@ -29,7 +29,7 @@ void add_places(const View& view, const StarTable& stars, std::size_t places, Ef
   std::vector<Vec<Gcrs>> directions(size);
   const auto seconds_with = [&](const EffectSet& set) {
     const ApparentPlaces apparent = view.places(view.times().middle, set);
-    return median_seconds(repeats, [&] { apparent.stars(columns, sample, directions); });
+    return median_seconds(share_repeats, [&] { apparent.stars(columns, sample, directions); });
   };
   const EffectSet& all = view.sensor().effects;
   const double whole_s = seconds_with(all);
@@ -56,7 +56,7 @@ void add_sky_parts(const View& view, double sky_s, EffectTimes& times) {
   std::array<double, sky_part_count> part_s{};
   double sum_s = 0.0, s10 = 0.0;
   for (std::size_t i = 0; i < sky_part_count; ++i) {
-    part_s[i] = median_seconds(repeats, [&] {
+    part_s[i] = median_seconds(share_repeats, [&] {
       for (const auto& direction : sample) s10 += sky.part_s10(static_cast<SkyPart>(i), direction);
     });
     sum_s += part_s[i];

@@ -19,7 +19,7 @@ namespace {
 constexpr double precision = 0.03;
 constexpr int plan_repeats = 5;
 
-SensorConfig planned_for(SensorConfig sensor, const Accuracy& accuracy) {
+SensorConfig with_accuracy(SensorConfig sensor, const Accuracy& accuracy) {
   sensor.accuracy = accuracy;
   return sensor;
 }
@@ -43,7 +43,7 @@ bool is_of_detector(const std::string& effect) {
 struct Planner {
   const SceneFrames& frames;
   std::shared_ptr<const StarMap> stars = frames.stars();
-  SensorConfig sensor = planned_for(frames.sensor(), standard_accuracy());
+  SensorConfig sensor = with_accuracy(frames.sensor(), standard_accuracy());
   ObjectShapes shapes{frames.scenario().own_objects, sensor.camera.band, sensor.effects};
   ExposurePlanner planner{sensor, stars.get(), frames.scenario().faintest_star_mag, &shapes};
   View view{sensor, frames.times(), frames.world(), frames.scenario().seed};
@@ -84,7 +84,7 @@ SceneTrial try_scene(int number, const TrialOptions& options,
                      const std::filesystem::path& directory, Threads& threads) {
   SceneTrial trial{.scene = draw_effect_scene(options.seed, number, directory, threads)};
   const SceneFrames frames(load_scenario(trial.scene.path), "eye", 1, threads);
-  const SensorConfig reference = planned_for(frames.sensor(), reference_accuracy());
+  const SensorConfig reference = with_accuracy(frames.sensor(), reference_accuracy());
   const FrameProducts exact = frames.make(reference);
   const FrameComparison comparison(frames, exact, exact.plan.effects);
   trial.sources = std::size_t(std::ranges::count_if(
@@ -97,7 +97,7 @@ SceneTrial try_scene(int number, const TrialOptions& options,
   const auto effects = planner.effects();
   for (const Accuracy& accuracy :
        options.effect.empty() ? budgets(options.seed, number) : std::vector<Accuracy>()) {
-    const FrameProducts frame = frames.make(planned_for(frames.sensor(), accuracy));
+    const FrameProducts frame = frames.make(with_accuracy(frames.sensor(), accuracy));
     trial.plans.push_back({number, accuracy.name, accuracy.budget, frame.plan.error,
                            comparison.error_of(frame, frame.plan.effects).largest});
     for (const PlannedEffect& effect : frame.plan.planned)

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Runs benchmarks; with --json one object per line", "dmise bench"};
   app.set_version_flag("--version", dmise::version_text("dmise-bench"));
   app.require_subcommand(1);
+  app.footer("Studies, which ./dmise bench builds when they are asked for: paper, scaling");
   int code = 0;
   for (const auto& bench : dmise::benches()) {
     auto json = std::make_shared<bool>(false);

@@ -2,14 +2,10 @@
 # hold; `development` is what other projects need to use core/.
 include(CMakePackageConfigHelpers)
 
-foreach(kind cameras materials models scenarios sites)
+foreach(kind cameras catalogues materials models scenarios sites)
   install(DIRECTORY launch/${kind} DESTINATION share/dmise/launch COMPONENT runtime)
 endforeach()
 install(DIRECTORY proto/dmise DESTINATION share/dmise/proto COMPONENT runtime)
-foreach(catalogue stars.dat satellites.dat)  # from ./dmise setup, with their licences
-  install(FILES build/data/${catalogue} build/data/${catalogue}.copyright DESTINATION share/dmise/data COMPONENT runtime
-          OPTIONAL)
-endforeach()
 install(PROGRAMS launch/setup/fetch-tycho2.sh launch/setup/fetch_source.py DESTINATION share/dmise/launch/setup COMPONENT runtime)
 install(FILES launch/setup/tycho2.txt DESTINATION share/dmise/launch/setup COMPONENT runtime)
 install(FILES LICENSE NOTICE CITATION.cff DESTINATION share/doc/dmise COMPONENT runtime)
@@ -24,7 +20,7 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/dashboard DESTINATION share/dmise COMPONEN
 get_property(programs GLOBAL PROPERTY DMISE_PROGRAMS)
 set(manuals ${CMAKE_BINARY_DIR}/share)
 add_custom_command(OUTPUT ${manuals}/made
-  COMMAND ${PROJECT_SOURCE_DIR}/launch/package/manuals.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${manuals}
+  COMMAND ${PROJECT_SOURCE_DIR}/launch/package/manuals.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${manuals} ${CMAKE_CROSSCOMPILING_EMULATOR}
   COMMAND ${CMAKE_COMMAND} -E touch ${manuals}/made
   DEPENDS ${programs} launch/package/manuals.sh COMMENT "manual pages" VERBATIM)
 add_custom_target(manuals ALL DEPENDS ${manuals}/made)
@@ -43,10 +39,15 @@ install(FILES ${CMAKE_BINARY_DIR}/dmiseConfig.cmake ${CMAKE_BINARY_DIR}/dmiseCon
               cmake/CorePackages.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
-# The package of Debian: needs what the container image needs.
-file(STRINGS ${PROJECT_SOURCE_DIR}/launch/stack/runtime-packages.txt needed REGEX "^[^#]")
-list(JOIN needed ", " needed)
+# The package, of the release that it is made on: 1.0.0~deb13.
+cmake_host_system_information(RESULT release QUERY DISTRIB_ID DISTRIB_VERSION_ID)
+list(JOIN release "" release)
+string(REPLACE debian deb release "${release}")
 set(CPACK_GENERATOR DEB)
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/PackageNeeds.cmake)
+set(CPACK_DMISE_SOURCE_DIR ${PROJECT_SOURCE_DIR})
+set(CPACK_DMISE_BINARY_DIR ${CMAKE_BINARY_DIR})
+set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION}~${release})
 set(CPACK_PACKAGE_NAME dmise)
 set(CPACK_PACKAGE_CONTACT "The DMISE developers <dmise@dmise.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulator of optical sensors that watch near-Earth space")
@@ -62,7 +63,6 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME dmise)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_RUNTIME_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "${needed}")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "man-db, python3-numpy, python3-protobuf, python3-zmq")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/launch/package/prerm)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

@@ -9,7 +9,12 @@ void add_bench_command(CLI::App& app) {
   auto* command = app.add_subcommand("bench", "Runs benchmarks; with --json one object per line");
   command->set_help_flag();  // the benchmark program has its own
   command->prefix_command();
-  command->callback([command] { become_program("dmise-bench", command->remaining()); });
+  command->callback([command] {
+    const auto arguments = command->remaining();
+    const bool study =
+        !arguments.empty() && (arguments.front() == "paper" || arguments.front() == "scaling");
+    become_program(study ? "dmise-studies" : "dmise-bench", arguments);
+  });
 }
 
 }  // namespace dmise

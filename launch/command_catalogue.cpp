@@ -172,8 +172,8 @@ void add_star_commands(CLI::App& command) {
   };
   auto fetched = std::make_shared<Files>();
   auto* fetch = command.add_subcommand(
-      "fetch", "Fetches Tycho-2 (stars to V = 11), joins it with stars.dat and indexes both");
-  fetch->add_option("name", "tycho2")->required()->check(CLI::IsMember({"tycho2"}));
+      "fetch", "Fetches Tycho-2 (stars to V = 11), joins it with kstars and indexes both");
+  fetch->add_option("name", "tycho2")->required()->check(one_of({"tycho2"}));
   fetch->add_option("--from", fetched->from,
                     "URL or path of deepstars.dat, or of an archive (.deb, .tar.gz) that holds it; "
                     "without it fchart3 of PyPI");
@@ -219,7 +219,7 @@ void add_catalogue_command(CLI::App& app) {
   synth
       ->add_option("--format", synthetic->format,
                    "3le, or omm (CSV); default omm above 339999 objects, the limit of a TLE")
-      ->check(CLI::IsMember({"3le", "omm"}));
+      ->check(one_of({"3le", "omm"}));
   synth->callback([synthetic] { print_synthetic(*synthetic); });
 
   auto* states =
@@ -228,7 +228,7 @@ void add_catalogue_command(CLI::App& app) {
   states->add_option("--at", options->at, "UTC (ISO 8601) or Julian date")->required();
   states->add_option("--frame", options->frame, "teme, gcrs or itrs")
       ->default_val("teme")
-      ->check(CLI::IsMember({"teme", "gcrs", "itrs"}));
+      ->check(one_of({"teme", "gcrs", "itrs"}));
   states->add_option("--earth-orientation", options->earth_orientation,
                      "IERS finals file; without it UT1 equals UTC and there is no polar motion");
   states->callback([options] { print_states(*options); });

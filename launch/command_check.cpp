@@ -178,10 +178,11 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool h
   for (const auto& warning : outlook.warnings)
     std::printf("warning: %s\n", printable(warning, 4000).c_str());
   const std::size_t warnings = outlook.warnings.size();
-  const std::string warned = formatted(", %zu warning%s", warnings, warnings == 1 ? "" : "s");
-  std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors%s\n",
-              printable(scenario.path).c_str(), outlook.objects, scenario.sensors.size(),
-              static_cast<long long>(scenario.last_tick()), scenario.tick.seconds(),
+  const std::string warned = ", " + counted(warnings, "warning");
+  std::printf("%s: %s, %s, %s of %g s: no errors%s\n", printable(scenario.path).c_str(),
+              counted(outlook.objects, "object").c_str(),
+              counted(scenario.sensors.size(), "sensor").c_str(),
+              counted(std::size_t(scenario.last_tick()), "tick").c_str(), scenario.tick.seconds(),
               warnings > 0 ? warned.c_str() : "");
 }
 

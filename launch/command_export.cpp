@@ -67,7 +67,8 @@ void check_use(const ExportOptions& options, const ExportFormat& format, Product
 
 /// Path of a catalogue that a scenario names.
 std::string path_of(const std::string& named) {
-  const std::string path = named == "gpredict" ? find_catalogue("satellites.dat") : named;
+  const char* file = object_catalogue_file(named);
+  const std::string path = file ? find_catalogue(file) : named;
   if (path.empty() || !path_exists(path))
     throw ConfigError("--catalogue: the run's catalogue is not found from here, got " +
                       printable(named));

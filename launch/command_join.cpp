@@ -40,6 +40,8 @@ struct JoinOptions {
   int slot = 0;                       // from 1: index of the sensor; 0: any free one
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   std::vector<std::string> more;      // passed to the node's program
+  std::string program;                // that an own node runs, instead of the scenario's
+  bool allow_programs = false;
 };
 
 /// One node of a run whose time-master was started elsewhere, by `dmise launch --nodes-elsewhere`.
@@ -184,6 +186,10 @@ class Join {
       add({"--digest", digest_, "--seed", std::to_string(scenario_.seed)});
     if (kind && kind->each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
     all.insert(all.end(), options_.more.begin(), options_.more.end());
+    if (kind && kind->each_own_node && options_.allow_programs) add({"--allow-programs"});
+    if (options_.program.empty()) return all;
+    add({"--"});
+    for (auto& word : CLI::detail::split_up(options_.program)) all.push_back(std::move(word));
     return all;
   }
 
@@ -239,8 +245,8 @@ int slot_of_environment() {
 std::string nodes_to_be() {
   std::string all = broker_name;
   for (const NodeKind& kind : node_kinds())
-    if (!kind.each_sensor) all += std::string(", ") + kind.name;
-  return all + ", a sensor's name, or " + any_sensor;
+    if (!kind.each_sensor && !kind.each_own_node) all += std::string(", ") + kind.name;
+  return all + ", the name of a sensor or an own node, or " + any_sensor;
 }
 
 void join(JoinOptions options) {
@@ -256,6 +262,9 @@ void join(JoinOptions options) {
   if (options.node != broker_name && options.node != any_sensor &&
       !kind_of_node(options.node, scenario))
     throw ConfigError(options.node + ": is not a node of " + options.scenario);
+  const NodeKind* kind = kind_of_node(options.node, scenario);
+  if (!options.program.empty() && !(kind && kind->each_own_node))
+    throw ConfigError("--program: is for a node of `nodes`, got " + options.node);
   Join(options, scenario).run();
 }
 
@@ -288,6 +297,10 @@ void add_join_command(CLI::App& app) {
       ->check(transport_address());
   add_seed_option(*command, options->seed, "as given to the launch");
   command->add_option("--plan", options->plan, "as given to the launch");
+  add_allow_programs_flag(*command, options->allow_programs);
+  command->add_option("--program", options->program,
+                      "of an own node: what it runs, instead of the scenario's program: "
+                      "\"python3 gnc.py\", from this directory");
   command->allow_extras();  // for the node's program: --threads, --log-level
   command->callback([options, command] {
     options->more = command->remaining();

@@ -29,7 +29,8 @@ struct KeygenOptions {
 /// Nodes of a kind that may ask the time-master: also one that the scenario does not need, for its
 /// container or task stands by until the end of the run.
 std::vector<std::string> askers_of(const NodeKind& kind, const Scenario& scenario) {
-  if (kind.each_sensor || kind.wanted(scenario)) return nodes_of(kind, scenario);
+  if (kind.each_sensor || kind.each_own_node || kind.wanted(scenario))
+    return nodes_of(kind, scenario);
   return {kind.name};
 }
 

@@ -45,6 +45,7 @@ void add_launch_command(CLI::App& app) {
       ->needs(view);
   command->add_flag("--nodes-elsewhere", options->nodes_elsewhere,
                     "start only the time-master; other nodes are started by `dmise join`");
+  add_allow_programs_flag(*command, options->allow_programs);
   command->add_flag("--force", options->force, "replace the products in the directory");
   command->callback([options] { launch(*options); });
 }

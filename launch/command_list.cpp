@@ -12,6 +12,8 @@
 #include "core/config/effect_list.h"
 #include "core/config/material_config.h"
 #include "core/config/search_path.h"
+#include "core/config/star_catalogues.h"
+#include "core/config/yaml_reader.h"
 #include "core/photometry/band.h"
 #include "launch/commands.h"
 
@@ -72,16 +74,16 @@ void list_materials() {
 
 void list_catalogues() {
   const auto show = [](const char* name, const char* use, const char* what, const char* file,
-                       const char* remedy = "./dmise setup fetches it") {
+                       const char* remedy = "DMISE_HOME is wrong") {
     const std::string path = find_catalogue(file);
     print(name, formatted("%s (%s): ", what, use) +
                     (path.empty() ? std::string("not installed; ") + remedy : path));
   };
-  show("gpredict", "objects: [{catalogue: gpredict}]", "objects in orbit of Debian's gpredict",
-       "satellites.dat");
-  show("kstars", "stars: {catalogue: kstars}", "stars of Debian's kstars-data", "stars.dat");
-  show("tycho2", "stars: {catalogue: tycho2}", "the same and Tycho-2", "tycho2.stars",
-       "dmise catalogue fetch tycho2 makes it");
+  show("demo", "objects: [{catalogue: demo}]", "979 objects in orbit, January 2018",
+       object_catalogue_file("demo"));
+  show("kstars", "stars: {catalogue: kstars}", "stars to V = 9", star_catalogue_file("kstars"));
+  show("tycho2", "stars: {catalogue: tycho2}", "the same and Tycho-2",
+       star_catalogue_file("tycho2"), "dmise catalogue fetch tycho2 makes it");
 }
 
 void list_effects() { std::printf("%s", effects_markdown().c_str()); }

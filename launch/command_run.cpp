@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "core/sim/controller.h"
@@ -33,7 +34,7 @@ struct RunOptions {
   std::string scenario, out, plan;
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   int threads = 1;
-  bool force = false;
+  bool force = false, allow_programs = false;
 };
 
 constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
@@ -161,8 +162,17 @@ class EmbeddedRun {
   bool finished_ = false;
 };
 
+/// Nobody can join a run in one process.
+void refuse_elsewhere(const Scenario& scenario) {
+  for (const OwnNode& node : scenario.own_nodes)
+    if (node.run.empty())
+      throw ConfigError(node.where + ": is elsewhere: only `dmise launch` lets it join");
+}
+
 void run(const RunOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
+  if (!options.allow_programs) refuse_programs(scenario.own_nodes);
+  refuse_elsewhere(scenario);
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
   scenario.network.publish_states = false;  // nobody outside this process can take them
@@ -171,6 +181,7 @@ void run(const RunOptions& options) {
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();
+  if (!scenario.own_nodes.empty()) make_directories(directory.path() + "/logs");
   const auto start = std::chrono::steady_clock::now();
   EmbeddedRun embedded(scenario, std::move(scene), directory, options.threads, begin.first_tick);
   RunOutcome outcome = embedded.run();
@@ -197,6 +208,7 @@ void add_run_command(CLI::App& app) {
   add_seed_option(*command, options->seed, "seed of the random numbers, instead of the scenario's");
   command->add_option("--plan", options->plan,
                       "run.json of a run: its frames' levels of effects instead of a plan");
+  add_allow_programs_flag(*command, options->allow_programs);
   command->add_flag("--force", options->force, "replace the products in the directory");
   command->callback([options] { run(*options); });
 }

@@ -53,10 +53,10 @@ void print_text(const FrameSolution& s) {
               wcs_scale_rad_per_px(s.wcs) / arcsec, fit.model.mirrored() ? ", mirrored" : "");
   std::printf("stars        %d of %zu sources, residual %.3f px rms, log odds %.0f\n", fit.count,
               s.sources, fit.rms_px, s.plate.log_odds);
-  std::printf("plate        focal length %.3f +- %.2g px%s, distortion of order %d\n",
+  std::printf("plate        focal length %.3f +- %.2g px%s, %sdistortion of order %d\n",
               fit.model.focal_length_px,
               fit.free.focal_length ? std::sqrt(fit.variance(3)) * fit.model.focal_length_px : 0.0,
-              fit.free.centre ? ", centre" : "", fit.model.order);
+              fit.free.centre ? ", centre" : "", fit.free.radial ? "radial " : "", fit.model.order);
   std::printf("WCS          %.3f px rms, %.3f px at most\n", s.wcs.rms_px, s.wcs.max_px);
   if (!s.zero_point) return;
   const ZeroPoint& z = *s.zero_point;
@@ -99,6 +99,7 @@ void solve(const SolveOptions& o) {
   } catch (const Error& e) {
     throw Error(o.frame + ": " + e.what());
   }
+  print_notes(o.frame, solution.notes);
   if (!out.empty()) {
     FrameHeader header = solved_header(frame.header, solution);
     if (frame.header.unknown.has(FrameFact::pointing))

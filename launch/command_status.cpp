@@ -204,8 +204,8 @@ void add_clock_command(CLI::App& app) {
   auto* command = app.add_subcommand("clock", "Pauses, steps, paces or ends a run");
   command->require_subcommand(1);
   const std::map<std::string, std::pair<ClockAction, std::string>> actions{
-      {"pause", {ClockAction::pause, "stop after the last granted tick, or after --tick"}},
-      {"step", {ClockAction::step, "run --tick more ticks (default 1), then pause again"}},
+      {"pause", {ClockAction::pause, "stop after the last granted tick, or after this one"}},
+      {"step", {ClockAction::step, "run this many more ticks (default 1), then pause again"}},
       {"go-on", {ClockAction::go_on, "end a pause"}},
       {"end", {ClockAction::end_early, "end the run when all granted ticks are done"}},
       {"abort", {ClockAction::abort, "end the run at once"}}};
@@ -217,7 +217,8 @@ void add_clock_command(CLI::App& app) {
     add_master_option(*verb, "master", options->master)->required();
     verb->add_option("--keys", options->keys, "directory with operator.key");
     if (steps || action.first == ClockAction::pause)
-      verb->add_option("--tick", options->request.tick, steps ? "number of ticks" : "tick")
+      verb->add_option(steps ? "ticks,--tick" : "tick,--tick", options->request.tick,
+                       steps ? "number of ticks" : "tick")
           ->check(CLI::Range(Tick(steps), Tick(1) << 40));
     if (action.first == ClockAction::end_early || action.first == ClockAction::abort)
       verb->add_option("--reason", options->request.reason, "cause to record");

@@ -45,6 +45,7 @@ std::vector<TradeoffRow> known_rows(const std::string& path, const std::string& 
 
 void tradeoff(const TradeoffOptions& options) {
   const Scenario scenario = load_scenario(options.scenario);
+  refuse_own_nodes(scenario.own_nodes, "dmise tradeoff");
   const std::string sensor =
       options.sensor.empty() ? scenario.sensors.front().name : options.sensor;
   sensor_named(scenario, sensor);

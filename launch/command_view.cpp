@@ -28,6 +28,12 @@ void add_view_command(CLI::App& app) {
       "--truth", options->truth,
       "show truth beside detections to viewers that may see it; with keys gateway.key must "
       "be one of `dmise keygen --truth`");
+  options->answer_within_s = 10.0;
+  command
+      ->add_option("--answer-within", options->answer_within_s,
+                   "end with an error if no time-master has answered in this time [s]; 0: wait")
+      ->capture_default_str()
+      ->check(number_between(0.0, 1e6));
   command->add_flag("--no-control", options->no_control, "viewers cannot control the clock");
   command->callback([options] { become(gateway_command(*options)); });
 }

@@ -176,9 +176,10 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
                       to = format_utc(clock.utc(grid.last()), 3);
     const bool whole_s = from.ends_with(".000Z") && to.ends_with(".000Z");
     const std::size_t length = from.size() - (whole_s ? 5 : 1);
-    std::printf("%s%s, %sZ to %sZ: %zu passes of %zu objects%s\n", first ? "" : "\n",
-                sensor.name.c_str(), from.substr(0, length).c_str(), to.substr(0, length).c_str(),
-                passes.size(), objects.size(), filters_of(options, list).c_str());
+    std::printf("%s%s, %sZ to %sZ: %s of %s%s\n", first ? "" : "\n", sensor.name.c_str(),
+                from.substr(0, length).c_str(), to.substr(0, length).c_str(),
+                counted(passes.size(), "pass", "passes").c_str(),
+                counted(objects.size(), "object").c_str(), filters_of(options, list).c_str());
     std::fputs(pass_table(list, options.rows, !options.print_only).c_str(), stdout);
   }
   if (options.print_only) return;

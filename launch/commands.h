@@ -7,6 +7,10 @@ class App;
 
 namespace dmise {
 
+/// Adds the commands that the program has, in the order of its help: all of them
+/// (all_commands.cpp), or those that run and watch networks (network_commands.cpp).
+void add_commands(CLI::App& app);
+
 // Subcommands of `dmise`. Each adds itself to the command line; its callback does the work and
 // throws `ConfigError` (exit 2), `Error` (exit 1) or `ExitWith`.
 

@@ -37,6 +37,13 @@ inline CLI::Option* add_seed_option(CLI::App& command, std::optional<std::uint64
   return command.add_option("--seed", seed, what)->check(seed_range());
 }
 
+/// Adds `--allow-programs`.
+inline CLI::Option* add_allow_programs_flag(CLI::App& command, bool& allowed) {
+  return command.add_flag("--allow-programs", allowed,
+                          "start the programs that `nodes` of the scenario names: they can do "
+                          "whatever you can");
+}
+
 /// Adds `name`, the address of the time-master.
 inline CLI::Option* add_master_option(CLI::App& command, const std::string& name,
                                       std::string& master) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "nodes/runtime/security/keys.h"
 
 namespace dmise {
@@ -20,7 +21,7 @@ std::vector<std::string> sensors_on(const Scenario& scenario, int host, int host
     if (host_of(i, hosts) == host) names.push_back(scenario.sensors[i].name);
   if (names.empty())
     throw ConfigError("--hosts: " + std::to_string(hosts) + " agents, but " +
-                      std::to_string(scenario.sensors.size()) + " sensors");
+                      counted(scenario.sensors.size(), "sensor"));
   return names;
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/nearest_name.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
@@ -91,10 +92,26 @@ class Launch {
   std::string report() const { return directory_.path() + "/logs/master.json"; }
   std::string announcement() const { return directory_.path() + "/logs/master.address"; }
 
+  /// Keeps what the time-masters of earlier parts of the run reported as master-1.json and so on;
+  /// removes what is of another run.
+  void keep_reports() const {
+    std::error_code ignored;
+    const auto of_part = [&](int part) {
+      return directory_.path() + "/logs/master-" + std::to_string(part) + ".json";
+    };
+    int part = 1;
+    for (; path_exists(of_part(part)); ++part)
+      if (first_tick_ == 0) std::filesystem::remove(of_part(part), ignored);
+    if (first_tick_ == 0)
+      std::filesystem::remove(report(), ignored);
+    else
+      std::filesystem::rename(report(), of_part(part), ignored);
+  }
+
   void start_master() {
     std::error_code ignored;
     std::filesystem::remove(announcement(), ignored);
-    std::filesystem::remove(report(), ignored);
+    keep_reports();
     const auto& network = scenario_.network;
     const bool restart = network.on_silent_node == OnSilentNode::restart;
     const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
@@ -131,6 +148,7 @@ class Launch {
     for (const NodeKind& kind : node_kinds()) {
       const auto nodes = nodes_of(kind, scenario_);
       for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (kind.each_own_node && scenario_.own_nodes[i].run.empty()) continue;  // it joins
         auto arguments = common;
         const auto add = [&](std::initializer_list<std::string> more) {
           arguments.insert(arguments.end(), more);
@@ -142,6 +160,7 @@ class Launch {
         }
         add({"--name", nodes[i]});
         if (kind.writes_products) add({"--out", directory_.path()});
+        if (kind.each_own_node) add({"--allow-programs"});
         if (kind.each_sensor)
           add({"--digest", directory_.digest(), "--seed", std::to_string(scenario_.seed)});
         if (kind.each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
@@ -344,9 +363,12 @@ bool may_see_truth(const std::string& keys, const std::string& name) {
 
 void launch(const LaunchOptions& options) {
   if (options.log_format != "text" && options.log_format != "json")
-    throw ConfigError("--log-format: must be text or json, got " + options.log_format);
+    throw ConfigError("--log-format: must be text or json" +
+                      did_you_mean(options.log_format, {"text", "json"}) + ", got " +
+                      options.log_format);
   if (!options.metrics.empty()) metrics_address(options.metrics);
   Scenario scenario = load_scenario(options.scenario);
+  if (!options.allow_programs && !options.nodes_elsewhere) refuse_programs(scenario.own_nodes);
   if (options.hosts > 0 && scenario.network.on_silent_node == OnSilentNode::drop)
     throw ConfigError("--hosts: agents can't take part in a run with on_silent_node: drop");
   if (options.hosts > 0 && !options.keys.empty())

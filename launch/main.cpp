@@ -17,16 +17,6 @@
 namespace dmise {
 namespace {
 
-/// In the order of the help.
-constexpr void (*commands[])(CLI::App&) = {
-    add_demo_command,   add_check_command,   add_explain_command,      add_run_command,
-    add_launch_command, add_join_command,    add_dataset_command,      add_detect_command,
-    add_score_command,  add_report_command,  add_discriminate_command, add_export_command,
-    add_solve_command,  add_visible_command, add_view_command,         add_catalogue_command,
-    add_list_command,   add_schema_command,  add_keygen_command,       add_status_command,
-    add_health_command, add_clock_command,   add_survey_command,       add_tradeoff_command,
-    add_bench_command,  add_manual_commands};
-
 /// Returns `code`, or 1 with a line on stderr if what was printed could not be written. A reader
 /// that went away (`| head`) is no error.
 int after_output(int code) {
@@ -46,7 +36,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
   app.set_version_flag("--version", version_text("dmise"));
   app.require_subcommand(1);
-  for (const auto add_command : commands) add_command(app);
+  add_commands(app);
   want_decimal_numbers(app);
   constexpr std::size_t longest = 4000;  // of an error message [bytes]
   try {

@@ -5,8 +5,11 @@
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
+#include "launch/make_fusion.h"
 #include "nodes/environment/environment_actor.h"
-#include "nodes/fusion/fusion_evaluator.h"
+#include "nodes/fusion/fusion_journal.h"
+#include "nodes/own/own_actor.h"
+#include "nodes/runtime/process/event.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/make_sensor.h"
@@ -27,14 +30,29 @@ std::unique_ptr<Participant> make_environment(const std::string&, NodeParts& par
   return std::make_unique<EnvironmentActor>(parts.scenario, make_clock(parts.scenario));
 }
 
+std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& parts) {
+  const auto& nodes = parts.scenario.own_nodes;
+  const OwnNode& node = *std::ranges::find(nodes, name, &OwnNode::name);
+  return std::make_unique<OwnActor>(
+      parts.scenario, node, make_clock(parts.scenario),
+      OwnActorSettings{.log_path = parts.directory + "/logs/" + name + ".log",
+                       .error_prefix = name + ": ",
+                       .note = parts.note,
+                       .stop = &stop_signal()});
+}
+
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
                      parts.threads);
 }
 
-template <class Evaluator>
-std::unique_ptr<Participant> make_evaluator(const std::string&, NodeParts& parts) {
-  return std::make_unique<Evaluator>(parts.scenario, make_clock(parts.scenario), parts.directory);
+std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {
+  return std::make_unique<PositionsEvaluator>(parts.scenario, make_clock(parts.scenario),
+                                              parts.directory);
+}
+
+std::unique_ptr<Participant> make_fusion_node(const std::string&, NodeParts& parts) {
+  return make_fusion(parts.scenario, make_clock(parts.scenario), parts.directory);
 }
 
 std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {
@@ -69,9 +87,10 @@ std::optional<Tick> unfinished_tracks(const std::string&, const Scenario& scenar
 constexpr NodeMaker makers[] = {
     {orbit_node, make_orbit, no_products},
     {environment_node, make_environment, no_products},
+    {any_own_node, make_own_node, no_products},
     {any_sensor, make_one_sensor, unfinished_frame},
-    {positions_node, make_evaluator<PositionsEvaluator>, unfinished_positions},
-    {fusion_node, make_evaluator<FusionEvaluator>, unfinished_tracks},
+    {positions_node, make_positions, unfinished_positions},
+    {fusion_node, make_fusion_node, unfinished_tracks},
 };
 
 }  // namespace

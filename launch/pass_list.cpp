@@ -23,7 +23,7 @@ Value of(const std::string& text) { return {text, true}; }
 Value of(bool flag) { return {flag ? "true" : "false"}; }
 Value of(double value, int decimals) { return {formatted("%.*f", decimals, value)}; }
 
-struct Column {
+struct PassColumn {
   const char* name;
   std::function<Value(const PassList&, const Pass&)> value;
 };
@@ -38,10 +38,10 @@ Value elevation(const PassMoment& m) {
   return m.horizontal ? of(m.horizontal->elevation_rad / deg, 3) : Value{};
 }
 
-std::vector<Column> columns_of(const PassList& list) {
+std::vector<PassColumn> columns_of(const PassList& list) {
   using L = const PassList&;
   using P = const Pass&;
-  std::vector<Column> all = {
+  std::vector<PassColumn> all = {
       {"sensor", [](L l, P) { return of(l.sensor.name); }},
       {"catalogue_number",
        [](L l, P p) { return of(double(l.elements[p.object].catalogue_number), 0); }},
@@ -150,13 +150,14 @@ std::string pass_csv(const PassList& list, bool with_header) {
   const auto columns = columns_of(list);
   std::string text;
   if (with_header) {
-    for (const Column& c : columns) text += (text.empty() ? "" : ",") + std::string(c.name);
+    for (const PassColumn& c : columns) text += (text.empty() ? "" : ",") + std::string(c.name);
     text += '\n';
   }
   for (const Pass& p : list.passes) {
     const char* comma = "";
-    for (const Column& c : columns) {
-      text += comma + csv_field(c.value(list, p).text);
+    for (const PassColumn& c : columns) {
+      const Value value = c.value(list, p);
+      text += comma + csv_field(value.quoted ? formula_free(value.text) : value.text);
       comma = ",";
     }
     text += '\n';
@@ -170,7 +171,7 @@ std::string pass_jsonl(const PassList& list) {
   for (const Pass& p : list.passes) {
     JsonWriter w;
     w.begin_object();
-    for (const Column& c : columns) {
+    for (const PassColumn& c : columns) {
       const Value v = c.value(list, p);
       w.key(c.name);
       v.quoted ? w.value(v.text) : w.raw(v.text.empty() ? "null" : v.text);

@@ -33,7 +33,9 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
   const bool anew = scenario.fusion && directory.lacks_nodes();
   if (!force && content == Content::same_run_unfinished && !anew)
     start.first_tick = resume_tick(scenario, directory);
+  EarlierParts earlier;
   if (start.first_tick > 0) {
+    earlier = earlier_parts(scenario, directory);
     std::printf(
         "%s contains this run, unfinished: continuing at tick %ld of %ld; --force restarts\n",
         directory.path().c_str(), long(start.first_tick), long(scenario.last_tick()));
@@ -41,19 +43,30 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
   } else if (content != Content::no_run || !found.empty()) {
     directory.clear(force);
   }
-  mark_begun(directory);
+  mark_begun(directory, earlier);
   return start;
 }
 
 void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutcome outcome) {
+  // Report the first error; if that was a full disk, others are consequences.
+  const auto fails = [&](const Error& error) {
+    if (outcome.status != "failed") outcome.reason = error.what();
+    outcome.status = "failed";
+  };
   try {
     directory.merge_lines();
+  } catch (const Error& error) {
+    fails(error);
+  }
+  try {
+    const EarlierParts parts = parts_begun(directory);
+    outcome.parts = parts.count;
+    outcome.wall_s += parts.wall_s;
     write_run_record(directory, scenario, outcome);  // the last product, for it marks completion
     write_index_page(directory, outcome.status != "interrupted");  // which ends at once
   } catch (const Error& error) {
-    // Report the first error; if that was a full disk, this one is a consequence.
-    if (outcome.status != "failed") outcome.reason = error.what();
-    outcome.status = "failed";
+    fails(error);
+    mark_failed(directory, outcome.reason);
   }
   std::fputs(summary_text(directory, scenario, outcome).c_str(), stdout);
   if (outcome.status == "failed") throw Error(outcome.reason);

@@ -52,7 +52,7 @@ std::vector<ChartTick> time_ticks(const Clock& clock, const TimeGrid& grid) {
       step_s = s;
       break;
     }
-  const double of_day_s = clock.utc(grid.from).jd2 * day_s;
+  const double of_day_s = double(to_instant(clock.utc(grid.from)).ns_of_day) / double(ns_per_s);
   std::vector<ChartTick> ticks;
   for (double s = std::ceil(of_day_s / step_s - 1e-9) * step_s; s <= of_day_s + span_s + 1e-6;
        s += step_s) {

@@ -1,8 +1,14 @@
 #include "launch/restarts.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace dmise {
+namespace {
+
+constexpr std::chrono::seconds between_starts{1};
+
+}  // namespace
 
 std::vector<std::string> Restarts::check(const RunStatus& status, Instant now) {
   std::vector<std::string> lines;
@@ -26,8 +32,13 @@ std::string Restarts::reason(const Child& child, const RunStatus& status, Instan
   if (child.name == "time-master") return "";  // the run cannot continue without it
   if (child.exit_code && *child.exit_code > killed_by)
     return std::string("was killed (") + strsignal(*child.exit_code - killed_by) + ")";
-  // A process that was just started needs time to join.
   const auto last = last_.find(child.name);
+  // It was refused, or could not begin. A scenario that it can't use (2) stays the same.
+  if (child.exit_code && *child.exit_code == 1 &&
+      std::ranges::find(status.missing, child.name) != status.missing.end() &&
+      (last == last_.end() || now - last->second >= between_starts))
+    return "has ended before it joined";
+  // A process that was just started needs time to join.
   if (last != last_.end() &&
       std::chrono::duration<double>(now - last->second).count() < network_.join_within_s)
     return "";

@@ -101,6 +101,8 @@ std::string scenario_digest(const Scenario& scenario) {
   std::string all = physics_json(scenario);
   for (const auto& path : files_of(scenario.objects, scenario.own_objects))
     all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
+  for (const auto& path : files_of(scenario.own_nodes))
+    all += "\n" + sha256_hex(read_text_file(path));
   for (const auto& path : {scenario.star_catalogue_path, scenario.earth_orientation_path})
     all += "\n" + (path.empty() ? std::string("none") : file_digest(path));
   return sha256_hex(all).substr(0, 32);
@@ -201,11 +203,14 @@ std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string
     s.detections = int(count_lines(directory + "detections.jsonl"));
     for (const auto& line : whole_lines(directory + "truth.jsonl"))
       s.objects += line.find("\"in_frame\":true") != std::string::npos;
-    const auto costs = whole_lines(directory + "cost.jsonl");
-    for (const auto& line : costs) {
-      s.seconds_per_frame += number_in(line, "total_s") / double(costs.size());
+    double frames = 0.0, seconds = 0.0;
+    for (const auto& line : whole_lines(directory + "cost.jsonl")) {
+      const double of_line = std::max(1.0, number_in(line, "frames"));
+      frames += of_line;
+      seconds += of_line * number_in(line, "total_s");
       s.memory_mb = std::max(s.memory_mb, number_in(line, "pss_mb"));
     }
+    if (frames > 0.0) s.seconds_per_frame = seconds / frames;
     summaries.push_back(s);
   }
   return summaries;

@@ -35,23 +35,33 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
   json.list("dropped", outcome.dropped);
   json.field("software", software_name()).field("digest", directory.digest());
   json.field("seed", scenario.seed).field("wall_s", outcome.wall_s);
+  json.field("parts", outcome.parts);
   json.list("catalogue_sha256", directory.catalogue_sha256());
   write_interpolation(json, scenario);
-  json.key("scenario").raw(physics_json(scenario));
-  json.key("nodes").begin_array();
+  json.end_object();
+  // The summary in the first line, then what grows with the run: a line a node and a frame.
+  std::string text = json.take();
+  text.pop_back();
+  text += ",\n\"scenario\":" + physics_json(scenario) + ",\n\"nodes\":[";
+  const char* separator = "\n";
   for (const auto& node : outcome.nodes) {
     const TimeSplit& times = node.times;
-    json.begin_object().field("name", node.name).field("compute_s", times.compute_s);
-    json.field("messaging_s", times.messaging_s).field("waiting_s", times.waiting_s);
-    json.field("start_s", times.start_s).field("peak_resident_bytes", times.peak_resident_bytes);
-    json.field("private_bytes", times.private_bytes).list("topics", node.consumes).end_object();
+    JsonWriter line;
+    line.begin_object().field("name", node.name).field("compute_s", times.compute_s);
+    line.field("messaging_s", times.messaging_s).field("waiting_s", times.waiting_s);
+    line.field("start_s", times.start_s).field("peak_resident_bytes", times.peak_resident_bytes);
+    line.field("private_bytes", times.private_bytes).list("topics", node.consumes).end_object();
+    text += separator + line.take();
+    separator = ",\n";
   }
-  json.end_array().key("frames").begin_array();
+  text += "],\n\"frames\":[";
+  separator = "\n";
   for (const auto& sensor : scenario.sensors)
-    for (const auto& line : whole_lines(directory.path() + "/" + sensor.name + "/cost.jsonl"))
-      json.raw(line);
-  json.end_array().end_object();
-  write_file_whole(directory.path() + "/run.json", json.take() + "\n");
+    for (const auto& line : whole_lines(directory.path() + "/" + sensor.name + "/cost.jsonl")) {
+      text += separator + line;
+      separator = ",\n";
+    }
+  write_file_whole(directory.path() + "/run.json", text + "]}\n");
 }
 
 void write_index_page(const RunDirectory& directory, bool pixels) {
@@ -87,6 +97,7 @@ std::string summary_text(const RunDirectory& directory, const Scenario& scenario
                       s.detections, s.seconds_per_frame, s.memory_mb);
   text +=
       formatted("%s in %.1f s (%s)", outcome.status.c_str(), outcome.wall_s, outcome.how.c_str());
+  if (outcome.parts > 1) text += formatted(" and %d parts", outcome.parts);
   if (outcome.status != "failed" && !outcome.reason.empty())
     text += ": " + printable(outcome.reason, 400);
   text += '\n';

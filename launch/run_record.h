@@ -12,9 +12,10 @@ namespace dmise {
 struct RunOutcome {
   /// complete; incomplete: without dropped nodes; ended: early, on request; interrupted; failed
   std::string status = "complete";
-  std::string how;     // "one process" or "a process per node"
-  std::string reason;  // unless complete or interrupted
-  double wall_s = 0.0;
+  std::string how;                   // "one process" or "a process per node"
+  std::string reason;                // unless complete or interrupted
+  double wall_s = 0.0;               // with that of the parts before
+  int parts = 1;                     // in which it was made: more than one of a run that went on
   std::vector<NodeStatus> nodes;     // of processes
   std::vector<std::string> dropped;  // nodes that the run went on without
 };

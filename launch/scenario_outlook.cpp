@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/printable.h"
 #include "launch/notes.h"
 #include "orbit-node/load_objects.h"
 #include "sensors/outlook/outlook_text.h"
@@ -13,6 +14,23 @@ namespace {
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
   for (const auto& line : more)
     if (std::find(all.begin(), all.end(), line) == all.end()) all.push_back(line);
+}
+
+/// "node gnc runs `python3 gnc.py` in DIR; it says where inspector is"
+std::string node_text(const Scenario& scenario, const OwnNode& node) {
+  std::vector<std::string> moved, turned;
+  for (const OwnObject& object : scenario.own_objects) {
+    const NodeMotion* motion = motion_by_node(object);
+    const NodeAttitude* attitude = attitude_by_node(object);
+    if (motion && motion->node == node.name) moved.push_back(object.name);
+    if (attitude && attitude->node == node.name) turned.push_back(object.name);
+  }
+  std::string text = "node " + node.name +
+                     (node.run.empty() ? " is elsewhere"
+                                       : " runs `" + command_text(node) + "` in " + node.directory);
+  if (!moved.empty()) text += "; it moves " + joined(moved);
+  if (!turned.empty()) text += "; it turns " + joined(turned);
+  return text;
 }
 
 }  // namespace
@@ -28,6 +46,7 @@ ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs&
                                  const Clock& clock, const OutlookOptions& options) {
   const ObjectPopulation& population = scene.population;
   ScenarioOutlook outlook{.objects = population.roster.objects.size()};
+  for (const OwnNode& node : scenario.own_nodes) outlook.notes.push_back(node_text(scenario, node));
   append(outlook.notes, population.notes);
   append(outlook.notes, clock.warnings(scenario.duration));
   append(outlook.warnings, scenario.warnings);

@@ -10,7 +10,6 @@
 namespace dmise {
 namespace {
 
-constexpr double rate_over_s = 5.0;
 constexpr std::string_view plain = "\x1b[0m", bold = "\x1b[1m", green = "\x1b[32m",
                            yellow = "\x1b[33m", red = "\x1b[31m";
 
@@ -55,15 +54,15 @@ void StatusWatch::take(const RunStatus& status, double now_s) {
     if (node.incarnation > h.incarnation) {
       h.gaps += int(node.incarnation - h.incarnation);
       h.last_error = "restarted" + when;
-      h.done.clear();
+      h.rate.reset();
     } else if (!node.alive && h.alive) {
       ++h.gaps;
       h.last_error = "lost" + when;
     }
     h.incarnation = node.incarnation;
     h.alive = node.alive;
-    h.done.emplace_back(now_s, node.done);
-    while (h.done.size() > 2 && h.done.front().first < now_s - rate_over_s) h.done.pop_front();
+    if (status.paused) h.rate.reset();
+    h.rate.take(node.done, now_s);
   }
   status_ = status;
   answered_s_ = now_s;
@@ -74,13 +73,6 @@ void StatusWatch::take(const RunStatus& status, double now_s) {
 void StatusWatch::miss(const std::string& reason, double now_s) {
   silent_s_ = std::max(1e-3, now_s - answered_s_);
   silence_ = reason;
-}
-
-double StatusWatch::rate(const History& node) const {
-  if (node.done.size() < 2) return 0.0;
-  const auto& [from_s, from] = node.done.front();
-  const auto& [to_s, to] = node.done.back();
-  return to_s > from_s ? double(to - from) * status_.tick_length.seconds() / (to_s - from_s) : 0.0;
 }
 
 std::string StatusWatch::table(const Layout& layout) const {
@@ -129,12 +121,13 @@ std::string StatusWatch::table(const Layout& layout) const {
                         : node.observer ? "observes"
                         : held          ? "awaited"
                                         : "alive";
-    const bool keeps_time = node.done >= 0 || !node.observer;
+    const bool keeps_time = node.done >= 0;  // the broker and most observers do no ticks
     const std::string lag =
         keeps_time ? formatted("%.4g s", std::max(0.0, at_s(first) - at_s(node.done))) : "-";
     add(padded(printable(node.name, 64), name_columns) + " " + padded(state, 8) +
             formatted(" %9s %8s %8s %5d  ", time_text(at_s(node.done)).c_str(),
-                      formatted("%.3gx", rate(h)).c_str(), lag.c_str(), h.gaps) +
+                      keeps_time ? formatted("%.3gx", h.rate.ticks_per_s() * tick_s).c_str() : "-",
+                      lag.c_str(), h.gaps) +
             h.last_error,
         !node.alive ? red
         : held      ? yellow

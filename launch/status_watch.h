@@ -1,10 +1,9 @@
 #pragma once
-#include <deque>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "nodes/runtime/observability/status.h"
+#include "nodes/runtime/observability/tick_rate.h"
 
 namespace dmise {
 
@@ -31,14 +30,12 @@ class StatusWatch {
 
  private:
   struct History {
-    std::deque<std::pair<double, Tick>> done;  // of the last seconds
+    TickRate rate;
     bool alive = true;
     std::uint64_t incarnation = 1;
     int gaps = 0;            // how often it was lost or replaced
     std::string last_error;  // the last of these, and when
   };
-  double rate(const History& node) const;
-
   RunStatus status_;
   std::map<std::string, History> nodes_;
   double answered_s_ = 0.0, silent_s_ = 0.0;

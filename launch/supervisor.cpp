@@ -1,8 +1,6 @@
 #include "launch/supervisor.h"
 
-#include <fcntl.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,25 +19,6 @@ namespace {
 
 using Milliseconds = std::chrono::milliseconds;
 
-/// In the child: executes the program, or writes the error to `report`.
-[[noreturn]] void become_child(std::vector<std::string> arguments, const std::string& log_path,
-                               bool keep_log, pid_t parent, int report) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) _exit(1);
-  const int log =
-      open(log_path.c_str(), O_WRONLY | O_CREAT | O_APPEND | (keep_log ? 0 : O_TRUNC), 0644);
-  const int in = open("/dev/null", O_RDONLY);
-  if (log >= 0 && in >= 0) {
-    dup2(in, STDIN_FILENO);
-    dup2(log, STDOUT_FILENO);
-    dup2(log, STDERR_FILENO);
-    execv(arguments[0].c_str(), pointers_to(arguments).data());
-  }
-  const int reason = errno;
-  if (write(report, &reason, sizeof reason) < 0) _exit(126);
-  _exit(127);
-}
-
 }  // namespace
 
 Supervisor::~Supervisor() { stop(Milliseconds(1000)); }
@@ -48,7 +27,7 @@ void Supervisor::start(const std::string& name, const std::vector<std::string>& 
                        const std::string& log_path) {
   children_.push_back({.name = name,
                        .arguments = arguments,
-                       .pid = spawn(name, arguments, log_path, false),
+                       .pid = spawn({.name = name, .arguments = arguments, .log_path = log_path}),
                        .exit_code = std::nullopt,
                        .log_path = log_path});
 }
@@ -69,38 +48,12 @@ void Supervisor::restart(const std::string& name) {
       }
       child.exit_code = killed_by + SIGKILL;  // should the next line fail
     }
-    child.pid = spawn(name, child.arguments, child.log_path, true);
+    child.pid = spawn(
+        {.name = name, .arguments = child.arguments, .log_path = child.log_path, .keep_log = true});
     child.exit_code.reset();
     if (first_failure_ == i) first_failure_.reset();
     ++child.starts;
   }
-}
-
-pid_t Supervisor::spawn(const std::string& name, const std::vector<std::string>& arguments,
-                        const std::string& log_path, bool keep_log) {
-  int report[2];
-  if (pipe2(report, O_CLOEXEC) != 0) throw Error(name + ": no pipe: " + std::strerror(errno));
-  const pid_t parent = getpid();
-  const pid_t pid = fork();
-  if (pid < 0) {
-    const int reason = errno;
-    close(report[0]);
-    close(report[1]);
-    throw Error(name + ": can't start a process: " + std::strerror(reason));
-  }
-  if (pid == 0) become_child(arguments, log_path, keep_log, parent, report[1]);
-  close(report[1]);
-  int reason = 0;
-  ssize_t got = 0;
-  do {
-    got = read(report[0], &reason, sizeof reason);
-  } while (got < 0 && errno == EINTR);
-  close(report[0]);
-  if (got > 0) {
-    waitpid(pid, nullptr, 0);
-    throw Error(arguments[0] + ": can't be started: " + std::strerror(reason));
-  }
-  return pid;
 }
 
 bool Supervisor::poll() {
@@ -159,13 +112,6 @@ std::string last_line(const std::string& path) {
 std::string program_directory() {
   std::error_code ignored;
   return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string();
-}
-
-std::vector<char*> pointers_to(std::vector<std::string>& words) {
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  return pointers;
 }
 
 void become(std::vector<std::string> command) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "nodes/runtime/process/spawn.h"
+
 namespace dmise {
 
 /// A child process and how it ended.
@@ -46,9 +48,6 @@ class Supervisor {
   const Child* first_failure() const;
 
  private:
-  pid_t spawn(const std::string& name, const std::vector<std::string>& arguments,
-              const std::string& log_path, bool keep_log);
-
   std::vector<Child> children_;
   std::optional<std::size_t> first_failure_;
 };
@@ -63,9 +62,6 @@ std::string last_line(const std::string& path);
 
 /// Directory of the running program.
 std::string program_directory();
-
-/// Pointers to words for execv, ended by null, as long as the words live.
-std::vector<char*> pointers_to(std::vector<std::string>& words);
 
 /// Replaces this process by the program `command[0]`. Throws `Error` if it cannot be started.
 [[noreturn]] void become(std::vector<std::string> command);

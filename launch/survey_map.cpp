@@ -6,14 +6,16 @@
 
 #include "core/base/formatted.h"
 #include "core/image/chart_layout.h"
+#include "launch/coastlines.h"
 
 namespace dmise {
 namespace {
 
-constexpr double cell_px = 8.0, margin_px = 40.0, head_px = 86.0, title_px = 30.0, gap_px = 34.0;
+constexpr double cell_px = 8.0, margin_px = 52.0, head_px = 86.0, title_px = 30.0, gap_px = 46.0;
 constexpr double panel_wide_px = map_columns * cell_px, panel_high_px = map_rows * cell_px;
 constexpr int panels_across = 2;
-constexpr Colour ink{40, 40, 40}, pale{120, 120, 120}, frame{190, 190, 190}, mark{213, 94, 0};
+constexpr Colour ink{40, 40, 40}, pale{120, 120, 120}, frame{190, 190, 190}, mark{213, 94, 0},
+    coast{90, 90, 90};
 constexpr Colour looked_at{235, 235, 235};
 
 /// Detections in a cell from which on it has a colour: dark is many.
@@ -71,6 +73,27 @@ void draw_cells(const SurveyMap& map, std::size_t shell, PagePoint corner, Chart
   }
 }
 
+/// "60 W", "30 N", "0".
+std::string degrees_text(int deg, const char* positive, const char* negative) {
+  if (deg == 0) return "0";
+  return std::to_string(std::abs(deg)) + (deg > 0 ? positive : negative);
+}
+
+PagePoint place_on(PagePoint corner, double longitude_deg, double latitude_deg) {
+  return {corner.x_px + (longitude_deg + 180.0) / 360.0 * panel_wide_px,
+          corner.y_px + (90.0 - latitude_deg) / 180.0 * panel_high_px};
+}
+
+void draw_coasts(PagePoint corner, ChartPen& pen) {
+  std::vector<std::vector<PagePoint>> lines;
+  for (const auto& line : coastlines()) {
+    auto& drawn = lines.emplace_back();
+    for (const CoastPoint& at : line)
+      drawn.push_back(place_on(corner, 0.1 * at.longitude, 0.1 * at.latitude));
+  }
+  pen.lines(lines, {.colour = coast, .width_px = 0.8}, {0, 0}, width_px, 1e5);
+}
+
 void draw_panel(const SurveyMap& map, std::size_t shell, PagePoint corner, ChartPen& pen) {
   const ShellSummary& s = map.summaries[shell];
   pen.text({corner.x_px, corner.y_px - 9},
@@ -79,25 +102,28 @@ void draw_panel(const SurveyMap& map, std::size_t shell, PagePoint corner, Chart
            {.size_px = 15, .colour = ink});
   draw_cells(map, shell, corner, pen);
   std::vector<std::vector<PagePoint>> grid;
-  for (int deg = -180; deg <= 180; deg += 60) {
-    const double x = corner.x_px + (deg + 180) / 360.0 * panel_wide_px;
-    grid.push_back({{x, corner.y_px}, {x, corner.y_px + panel_high_px}});
-  }
+  for (int deg = -180; deg <= 180; deg += 60)
+    grid.push_back({place_on(corner, deg, 90), place_on(corner, deg, -90)});
   for (int deg = -90; deg <= 90; deg += 30) {
-    const double y = corner.y_px + (90 - deg) / 180.0 * panel_high_px;
-    grid.push_back({{corner.x_px, y}, {corner.x_px + panel_wide_px, y}});
+    grid.push_back({place_on(corner, -180, deg), place_on(corner, 180, deg)});
     if (corner.x_px < 2 * margin_px)
-      pen.text({corner.x_px - 6, y + 4}, std::to_string(deg),
+      pen.text({corner.x_px - 6, place_on(corner, 0, deg).y_px + 4}, degrees_text(deg, " N", " S"),
                {.size_px = 11, .colour = pale, .anchor = Anchor::end});
   }
   pen.lines(grid, {.colour = frame, .width_px = 0.7}, {0, 0}, width_px, 1e5);
+  draw_coasts(corner, pen);
+  const double below_px = corner.y_px + panel_high_px;
   for (int deg = -180; deg <= 180; deg += 60)
-    pen.text({corner.x_px + (deg + 180) / 360.0 * panel_wide_px, corner.y_px + panel_high_px + 14},
-             std::to_string(deg), {.size_px = 11, .colour = pale, .anchor = Anchor::middle});
+    pen.text({place_on(corner, deg, 0).x_px, below_px + 14}, degrees_text(deg, " E", " W"),
+             {.size_px = 11, .colour = pale, .anchor = Anchor::middle});
+  pen.text({place_on(corner, 0, 0).x_px, below_px + 28}, "longitude [deg]",
+           {.size_px = 11, .colour = pale, .anchor = Anchor::middle});
+  if (corner.x_px < 2 * margin_px)
+    pen.text({corner.x_px - 40, place_on(corner, 0, 0).y_px}, "latitude [deg]",
+             {.size_px = 11, .colour = pale, .anchor = Anchor::middle, .upwards = true});
   for (const MapMark& site : map.sites) {
-    const double east = std::fmod(site.longitude_deg + 540.0, 360.0);
-    const double x = corner.x_px + east / 360.0 * panel_wide_px;
-    const double y = corner.y_px + (90.0 - site.latitude_deg) / 180.0 * panel_high_px;
+    const double east_deg = std::fmod(site.longitude_deg + 540.0, 360.0) - 180.0;
+    const auto [x, y] = place_on(corner, east_deg, site.latitude_deg);
     pen.lines({{{x - 5, y}, {x + 5, y}}, {{x, y - 5}, {x, y + 5}}},
               {.colour = mark, .width_px = 2.0}, {0, 0}, width_px, 1e5);
   }

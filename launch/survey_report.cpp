@@ -141,10 +141,10 @@ void write_choice(JsonWriter& json, const SurveyReport& report) {
 }  // namespace
 
 std::string survey_text(const SurveyReport& report) {
-  std::string text =
-      formatted("%s to %s, %zu objects, the Sun below %g deg\n", utc(report, {0}).c_str(),
-                utc(report, report.scenario.duration).c_str(), report.shells.of_object.size(),
-                report.night_below_rad / deg);
+  std::string text = formatted("%s to %s, %s, the Sun below %g deg\n", utc(report, {0}).c_str(),
+                               utc(report, report.scenario.duration).c_str(),
+                               counted(report.shells.of_object.size(), "object").c_str(),
+                               report.night_below_rad / deg);
   text += sensor_table(report);
   const auto& nights = report.summary.nights;
   for (std::size_t k = 0; k < nights.size(); ++k) {

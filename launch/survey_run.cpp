@@ -176,8 +176,8 @@ class Survey {
       surveys_.push_back(std::move(*survey));
     }
     if (known > 0)
-      notes_.push_back("surveys of " + std::to_string(known) + " of " + std::to_string(count) +
-                       " sensors were there");
+      notes_.push_back("surveys of " + std::to_string(known) + " of " + counted(count, "sensor") +
+                       " were there");
   }
 
   void note_gaps(const SensorSurvey& survey, const SensorConfig& sensor) {
@@ -232,8 +232,8 @@ class Survey {
     SurveyMap map{.title = "Where objects are detected",
                   .subtitle = format_utc(clock_.utc({0}), 0) + " to " +
                               format_utc(clock_.utc(scenario_.duration), 0) + ", " +
-                              std::to_string(surveys_.size()) + " sensors, " +
-                              std::to_string(shells_.of_object.size()) + " objects",
+                              counted(surveys_.size(), "sensor") + ", " +
+                              counted(shells_.of_object.size(), "object"),
                   .shells = shells_.shells,
                   .summaries = report.summary.run.shells,
                   .cells = {},

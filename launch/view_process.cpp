@@ -1,11 +1,12 @@
 #include "launch/view_process.h"
 
-#include <sys/stat.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/text_file.h"
 #include "launch/lock_holder.h"
 #include "launch/supervisor.h"
@@ -21,20 +22,20 @@ std::vector<std::string> gateway_command(const ViewOptions& options) {
   add("--keys", options.keys);
   add("--tokens", options.tokens);
   add("--announce", options.announce);
+  add("--answer-within", shortest_text(options.answer_within_s));
   if (options.no_control) command.push_back("--no-control");
   if (options.truth) command.push_back("--truth");
   return command;
 }
 
 std::string make_view_tokens(const std::string& path) {
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
-  const mode_t before = umask(077);
-  std::ofstream file(path);
-  umask(before);
+  unlink(path.c_str());
   const std::string control = random_token();
-  file << "view " << random_token() << "\noperator " << control << "\n";
-  if (!file.flush()) throw Error(path + ": cannot be written");
+  const std::string text = "view " + random_token() + "\noperator " + control + "\n";
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  const bool written = file >= 0 && write(file, text.data(), text.size()) == ssize_t(text.size());
+  if (file >= 0) close(file);
+  if (!written) throw Error(path + ": cannot be written");
   return control;
 }
 

@@ -13,6 +13,7 @@ struct ViewOptions {
   std::string tokens;                  // file of tokens; empty: none
   std::string listen = "127.0.0.1:0";  // address of the pages
   std::string announce;                // file for the URL; empty: none
+  double answer_within_s = 0.0;        // the time-master's first; 0: it is waited for
   bool no_control = false;
   bool truth = false;
 };

@@ -12,8 +12,8 @@
 namespace dmise {
 
 /// Publishes the roster of a scenario and, if anybody takes them, the states of all its objects at
-/// every tick, in GCRS.
-class OrbitActor : public Actor {
+/// every tick, in GCRS. What nodes of the user's move is as they say.
+class OrbitActor : public Participant {
  public:
   OrbitActor(const Scenario& scenario, const Clock& clock, Threads& threads);
   /// For objects that are already loaded.
@@ -21,6 +21,7 @@ class OrbitActor : public Actor {
 
   std::string name() const override { return orbit_node; }
   std::vector<std::string> produces() const override;
+  std::vector<std::string> consumes() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }
@@ -40,8 +41,10 @@ class OrbitActor : public Actor {
   SimTime tick_length_;
   Tick last_tick_;
   bool publishes_states_;
+  std::vector<std::string> actor_topics_;
   ObjectPopulation population_;
   StateSource source_;
+  ActorStates told_;
   std::function<void(const std::string&)> report_;
   std::vector<bool> reported_;
   std::atomic<std::uint64_t> steps_{0};

@@ -156,6 +156,7 @@ std::vector<std::string> Coordinator::holding() const {
   if (phase_ == Phase::connecting) {
     for (const std::string& name : options_.expected) {
       const Member& member = member_of(name);
+      if (member.dropped) continue;
       const Member& speaks = member.host.empty() ? member : members_.at(member.host);
       if (!speaks.ready || speaks.silent || member.silent) names.push_back(name);
     }

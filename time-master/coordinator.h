@@ -184,6 +184,7 @@ class Coordinator {
   void wait_or_fail(Member& member, const std::string& how, Instant now);
   void silence(Member& member, Instant now);
   void drop(Member& member, Instant now);
+  bool begin_without_missing(Instant now);
   void connect_if_complete(Instant now);
   void start_if_ready(Instant now);
   bool record(Member& member, TickTally tally);

@@ -5,6 +5,11 @@
 #include "time-master/coordinator.h"
 
 namespace dmise {
+namespace {
+
+constexpr const char* indispensable = "broker";
+
+}  // namespace
 
 std::string Coordinator::after_tick(const Member& member) const {
   return " (last tick done: " + std::to_string(member.done) + " of " +
@@ -66,7 +71,7 @@ void Coordinator::fail(const std::string& name, const std::string& reason) {
 void Coordinator::check(Instant now) {
   next_check_.reset();
   if (!over() && phase_ != Phase::running && options_.start_within.count() > 0) {
-    if (now - started_ >= options_.start_within)
+    if (now - started_ >= options_.start_within && !begin_without_missing(now))
       return fail_run("not started within " + in_seconds(options_.start_within) + ": waiting for " +
                       joined(holding()));
     check_by(started_ + options_.start_within);
@@ -121,8 +126,7 @@ void Coordinator::lost(Member& member, const std::string& how, Instant now) {
     return;
   }
   if (phase_ == Phase::gathering || member.is_guest()) return forget(member.node.name);
-  if (options_.on_silent == SilentPolicy::drop && member.keeps_time && phase_ == Phase::running)
-    return drop(member, now);
+  if (options_.on_silent == SilentPolicy::drop && member.keeps_time) return drop(member, now);
   wait_or_fail(member, how, now);
 }
 
@@ -154,7 +158,35 @@ void Coordinator::drop(Member& member, Instant now) {
   member.closed_from = std::min(member.done, slowest_done()) + 1;
   while (!member.manifests.empty() && member.manifests.back().tick >= member.closed_from)
     member.manifests.pop_back();
+  start_if_ready(now);
   grant(now);
+}
+
+/// Under `drop`, nodes that have not joined in time are lost like others. What they publish is not
+/// known: topics that somebody consumes and nobody else produces are theirs.
+bool Coordinator::begin_without_missing(Instant now) {
+  const std::vector<std::string> names = missing();
+  if (options_.on_silent != SilentPolicy::drop || phase_ != Phase::gathering ||
+      names.size() == options_.expected.size() ||
+      std::ranges::find(names, indispensable) != names.end())
+    return false;
+  std::set<std::string> topics;
+  for (const auto& [name, member] : members_)
+    if (!member.observer) topics.insert(member.node.consumes.begin(), member.node.consumes.end());
+  for (const auto& [name, member] : members_)
+    for (const std::string& topic : member.node.produces) topics.erase(topic);
+  for (const std::string& name : names) {
+    Member member = fresh({.node = {name, {}, {}}}, now);
+    member.left = member.dropped = member.ready = true;
+    member.closed_from = options_.first_tick;
+    member.node.produces.assign(topics.begin(), topics.end());
+    topics.clear();
+    members_[name] = std::move(member);
+  }
+  first_dropped_ = names.front();
+  started_ = now;  // of those who are left
+  connect_if_complete(now);
+  return true;
 }
 
 void Coordinator::fail_run(const std::string& cause) {

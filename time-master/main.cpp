@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   dmise::MasterOptions options;
   dmise::Tick ticks = 1;
   std::string report;
-  double silent_after_s = 5.0, progress_after_s = 0.0, stalled_after_s = 60.0, start_within_s = 0.0,
-         rejoin_within_s = 0.0;
+  double silent_after_s = 5.0, progress_after_s = 900.0, stalled_after_s = 60.0,
+         start_within_s = 0.0, rejoin_within_s = 0.0;
   CLI::App app("Runs the clock of one run.", "dmise-time-master");
   dmise::add_common_flags(app, flags);
   app.add_option("--bind", options.address, "address that all processes connect to; port 0: any")

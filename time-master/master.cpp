@@ -237,6 +237,7 @@ MasterResult MasterProcess::result() const {
   result.times = times_;
   result.messages = messages_;
   result.ticks = tick_log_.records();
+  result.waited_for_s = tick_log_.waited_for_s();
   result.cpu_s = std::max(0.0, cpu_s_);
   return result;
 }

@@ -71,6 +71,7 @@ void MasterProcess::handle(ControlMessage& message, const std::string& name) {
     coordinator_.fail(name, printable(heard_.failed().reason()));
   } else if (heard_.has_hello() || heard_.has_control()) {
     if (heard_.has_control()) control();
+    if (heard_.has_hello() && !before_welcome) adopt(sender);
     v1::MasterMessage answer;
     fill(answer.mutable_endpoints());
     publisher_.reply(sender, answer);
@@ -99,6 +100,7 @@ void MasterProcess::refuse_join(std::string_view sender, const std::string& reas
 void MasterProcess::done(const std::string& name) {
   if (security_.on() && !owners_.keep_own(name, heard_.mutable_done()))
     log_.warn("messages refused", "refused what " + name + " reports about topics of others");
+  if (tick_log_.is_wait_due(now())) tick_log_.wait(coordinator_.holding(), now());
   coordinator_.done(name, tally_of(heard_.done()), now());
   tick_log_.settle(coordinator_.settled(), now(), name);
   if (heard_.done().published().empty()) return;
@@ -111,8 +113,7 @@ void MasterProcess::done(const std::string& name) {
 }
 
 void MasterProcess::control() {
-  if (log_.admits("control requests"))
-    spdlog::info("asked to {}", v1::Control::Action_Name(heard_.control().action()));
+  if (log_.admits("control requests")) spdlog::info("asked to {}", request_text(heard_.control()));
   apply(heard_.control(), coordinator_, now());
 }
 
@@ -131,6 +132,10 @@ void MasterProcess::join(std::string_view sender, zmq::message_t& frame) {
     refusal = "this connection is that of " + stands_for;
   else if (join.observer() && join.ByteSizeLong() > most_observed_bytes)
     refusal = "an observer's topics may have 64 KiB in all";
+  else if (has_joined(join, stands_for))
+    return publisher_.reply(sender,
+                            publisher_.welcome(join.name(), tick_endpoint_,
+                                               directory_.all().at(join.name()).heartbeat_token));
   else if (auto fault = join.observer() ? std::nullopt : owners_.fault_of(join))
     refusal = std::move(fault);
   else
@@ -150,7 +155,7 @@ void MasterProcess::join(std::string_view sender, zmq::message_t& frame) {
     directory_.add(sender, incarnation, join, token);
     connections_.identify(frame, join.name(), join.observer());
   } else {
-    directory_.add_behind(sender, incarnation, join);
+    directory_.add_behind(sender, incarnation, join, token);
   }
   publisher_.reply(sender, publisher_.welcome(join.name(), tick_endpoint_, token));
   if (join.observer() && coordinator_.phase() != Phase::gathering)
@@ -163,6 +168,22 @@ void MasterProcess::join(std::string_view sender, zmq::message_t& frame) {
       fmt::format("{} joined{}{}", join.name(),
                   incarnation == 1 ? "" : fmt::format(", process {} of its name", incarnation),
                   missing.empty() ? "" : "; waiting for " + joined(missing)));
+}
+
+bool MasterProcess::has_joined(const v1::Join& join, const std::string& stands_for) const {
+  const auto peer = directory_.all().find(join.name());
+  return coordinator_.phase() == Phase::gathering && peer != directory_.all().end() &&
+         stands_for == (join.host().empty() ? join.name() : join.host()) &&
+         peer->second.join.SerializeAsString() == join.SerializeAsString();
+}
+
+void MasterProcess::adopt(std::string_view sender) {
+  const std::string name = directory_.adopt(sender);
+  if (name.empty()) return;
+  if (log_.admits("connections replaced"))
+    log_event(spdlog::level::warn, "node_connected_again", {{"name", name}},
+              name + " has connected again");
+  publisher_.send_again(name);
 }
 
 void MasterProcess::heartbeat(std::string_view sender, zmq::message_t& frame) {
@@ -180,6 +201,7 @@ void MasterProcess::heartbeat(std::string_view sender, zmq::message_t& frame) {
     return log_.warn("messages refused",
                      "refused a heartbeat under the name of " + heartbeat.name());
   connections_.identify(frame, heartbeat.name(), peer->join.observer());
+  directory_.prove(heartbeat.name(), sender);
   coordinator_.heartbeat(heartbeat.name(), heartbeat.computing(), heartbeat.progress(), now());
   times_[heartbeat.name()] = take(heartbeat.times());
   handle_host_report(heartbeat.name(), heartbeat.nodes(),

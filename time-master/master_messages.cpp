@@ -1,5 +1,7 @@
 #include "time-master/master_messages.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 
 #include "core/base/printable.h"
@@ -122,6 +124,27 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
   }
   for (const std::string& name : coordinator.missing()) endpoints->add_missing(name);
   for (const std::string& name : coordinator.holding()) endpoints->add_holding(name);
+}
+
+std::string request_text(const v1::Control& control) {
+  switch (control.action()) {
+    case v1::Control::ACTION_PAUSE:
+      return control.tick() > 0 ? fmt::format("pause after tick {}", control.tick()) : "pause";
+    case v1::Control::ACTION_STEP:
+      return control.tick() == 1 ? "step 1 tick" : fmt::format("step {} ticks", control.tick());
+    case v1::Control::ACTION_GO_ON:
+      return "go on";
+    case v1::Control::ACTION_PACE:
+      return control.factor() > 0.0
+                 ? fmt::format("keep a pace of {:g} times real time", control.factor())
+                 : "run as fast as possible";
+    case v1::Control::ACTION_END_EARLY:
+      return "end early";
+    case v1::Control::ACTION_ABORT:
+      return "abort";
+    default:
+      return "do nothing";
+  }
 }
 
 void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {

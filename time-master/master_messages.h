@@ -24,6 +24,9 @@ void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordin
 /// Sets the state of the clock and its nodes for `status` and observers.
 void describe(v1::Endpoints* endpoints, const Coordinator& coordinator);
 
+/// What a request asks for, in words for the log.
+std::string request_text(const v1::Control& control);
+
 /// Executes `control`.
 void apply(const v1::Control& control, Coordinator& coordinator, Instant now);
 

@@ -60,6 +60,11 @@ class MasterProcess {
   void done(const std::string& name);
   void control();
   void join(std::string_view sender, zmq::message_t& frame);
+  /// Whether this connection has joined with the same words already, and asks again since the
+  /// answer may be lost.
+  bool has_joined(const v1::Join& join, const std::string& stands_for) const;
+  /// A process whose connection broke continues over another, over which it has proved itself.
+  void adopt(std::string_view sender);
   void heartbeat(std::string_view sender, zmq::message_t& frame);
   void leave(const std::string& name);
 

@@ -158,6 +158,14 @@ void MasterPublisher::send_topology_to(const Peer& peer, const v1::Topology& top
   reply(peer.routing_id, message);
 }
 
+void MasterPublisher::send_again(const std::string& name) {
+  const auto peer = directory_.all().find(name);
+  const auto member = coordinator_.members().find(name);
+  if (peer == directory_.all().end() || member == coordinator_.members().end()) return;
+  if (topology_version_ > 0) send_topology_to(peer->second, directory_.topology());
+  reply(peer->second.routing_id, grant_for(member->second));
+}
+
 void MasterPublisher::announce_observer(const std::string& name) {
   const auto before = std::exchange(consumed_, {});
   index_consumers();

@@ -32,6 +32,8 @@ class MasterPublisher {
   void note(const TickTally& tally);
   /// An observer has joined a running run: only agents need to know its topics.
   void announce_observer(const std::string& name);
+  /// What may have been lost on the way to a process whose connection broke: topology and grant.
+  void send_again(const std::string& name);
   /// Sends what has changed since the last call; true if anything had.
   bool publish_changes();
   /// Sends the current grant.

@@ -46,6 +46,8 @@ std::string to_json(const MasterResult& result) {
     json.field("waiting_s", times.waiting_s);
     json.end_object();
   }
+  json.end_object().key("waited_for_s").begin_object();
+  for (const auto& [name, seconds] : result.waited_for_s) json.field(name, seconds);
   json.end_object().key("ticks").begin_array();
   for (const TickRecord& t : result.ticks) {
     json.begin_object().field("tick", std::int64_t(t.tick)).field("granted_s", t.granted_s);

@@ -24,9 +24,10 @@ struct MasterResult {
   std::uint64_t digest = 0;                // of everything published; the same for the same run
   std::uint64_t overruns = 0;              // ticks not done when the next was due in real time
   double worst_lag_s = 0.0;
-  std::uint64_t messages = 0;     // received from the first grant to the end
-  double cpu_s = 0.0;             // of the master's whole process in that time
-  std::vector<TickRecord> ticks;  // the latest
+  std::uint64_t messages = 0;                  // received from the first grant to the end
+  double cpu_s = 0.0;                          // of the master's whole process in that time
+  std::vector<TickRecord> ticks;               // the latest
+  std::map<std::string, double> waited_for_s;  // in which the clock waited for a node
 };
 
 /// Result of a coordinator's run.

@@ -1,6 +1,7 @@
 #include "core/astrometry/plate_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/astrometry/normal_equations.h"
@@ -11,6 +12,8 @@ namespace {
 constexpr int most_steps = 12, most_passes = 12;
 constexpr int soft_passes = 4;  // with Huber's weights, if there are outliers
 constexpr double huber = 1.5;
+/// Terms of order 3 whose sum, with one coefficient, is radial.
+constexpr std::array<std::size_t, 4> radial_terms{8, 11, 12, 15};
 
 /// Derivatives of a residual along x and y by the free parameters, each in units that move an image
 /// by about a pixel, and the residual.
@@ -47,6 +50,11 @@ class Equations {
     for (std::size_t i = 0; i < moves_.size(); ++i)
       undistorted = undistorted + moves_[i] * model_.distortion[i];
     if (free_.order > 0) row.by.insert(row.by.end(), moves_.begin(), moves_.end());
+    if (free_.radial) {
+      PixelPosition sum{};
+      for (const std::size_t term : radial_terms) sum = sum + moves_[term];
+      row.by.push_back(sum);
+    }
     row.residual = undistorted - *place;
     return true;
   }
@@ -67,6 +75,8 @@ class Equations {
     }
     if (free_.order > 0)
       for (double& c : m.distortion) c += by[i++];
+    if (free_.radial)
+      for (const std::size_t term : radial_terms) m.distortion[term] += by[i];
     return m;
   }
 
@@ -106,9 +116,9 @@ std::optional<PlateFit> fit_plate(const PlateModel& model, std::span<const Plate
   const int n = free.size();
   const auto side = std::size_t(n);
   PlateFit fit{.model = model, .free = free, .used = std::vector<char>(matches.size(), 1)};
-  if (free.order > 0) {
-    fit.model.order = free.order;
-    fit.model.distortion.resize(std::size_t(distortion_size(free.order)), 0.0);
+  if (const int order = free.radial ? 3 : free.order; order > 0) {
+    fit.model.order = order;
+    fit.model.distortion.resize(std::size_t(distortion_size(order)), 0.0);
   }
   std::vector<std::array<double, 3>> weight;
   for (std::size_t k = 0; k < matches.size(); ++k) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,9 +21,10 @@ struct PlateMatch {
 struct PlateFreedom {
   bool focal_length = false;
   bool centre = false;
-  int order = 0;  // of the distortion
+  int order = 0;        // of the distortion
+  bool radial = false;  // of order 0: its one term that is symmetric about the axis
 
-  int size() const { return 3 + focal_length + 2 * centre + distortion_size(order); }
+  int size() const { return 3 + focal_length + 2 * centre + radial + distortion_size(order); }
   bool operator==(const PlateFreedom&) const = default;
 };
 

@@ -10,6 +10,14 @@ namespace {
 constexpr std::size_t growing_sources = 300;
 /// Saturated stars take part in a fit only if there are fewer others.
 constexpr std::size_t least_exact = 10;
+/// Measurements a parameter from which on it may be chosen, and be heard as a rival.
+constexpr double least_measured = 5.0, least_of_rivals = 1.5;
+constexpr double least_weight = 0.01;  // of a rival
+/// Distortion of a lens of which nothing is known, at the corner, relative to the way there.
+constexpr double unknown_distortion = 0.003;
+/// The rest of the distortion of a lens, over its radial term of third order.
+constexpr double next_order = 0.1;
+constexpr std::size_t radial_term = 8;  // u^3 along x
 
 }  // namespace
 
@@ -109,6 +117,10 @@ std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPositio
     auto fit = fit_plate(model, pairs, {.focal_length = pairs.size() > 2}, settings);
     if (!fit || fit->count < 3) return std::nullopt;
     // The lens is not quite what is believed.
+    if (fit->count >= 8 && fit->rms_px > 0.7)
+      if (auto bent = fit_plate(model, pairs, {.focal_length = true, .radial = true}, settings);
+          bent && bent->rms_px < 0.7 * fit->rms_px)
+        fit = bent;
     if (fit->count >= 30 && fit->rms_px > 0.7)
       if (auto bent = fit_plate(model, pairs, {.focal_length = true, .order = 3}, settings);
           bent && bent->rms_px < 0.7 * fit->rms_px)
@@ -122,19 +134,25 @@ std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPositio
 }
 
 std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
-                                             std::span<const PlateMatch> pairs) const {
+                                             std::span<const PlateMatch> pairs,
+                                             std::vector<PlateRival>& rivals) const {
   const PlateFitSettings settings{.least_sigma_px = star_sigma_px(model)};
-  std::optional<PlateFit> best;
-  double least = 0.0;
+  struct Candidate {
+    PlateFit fit;
+    double score;
+  };
+  std::vector<Candidate> candidates;
+  std::optional<std::size_t> best;
   const auto ignored =
       std::count_if(pairs.begin(), pairs.end(), [](const PlateMatch& m) { return m.ignored; });
   const double all = double(pairs.size()) - double(ignored), measured = 2 * all;
   std::vector<PlateFreedom> freedoms{{.focal_length = true},
-                                     {.focal_length = true, .centre = true}};
+                                     {.focal_length = true, .centre = true},
+                                     {.focal_length = true, .radial = true}};
   for (int order = 1; order <= search_.most_order; ++order)
     freedoms.push_back({.focal_length = true, .order = order});
   for (const PlateFreedom& free : freedoms) {
-    if (free.size() > 4 && measured < 5.0 * free.size()) continue;
+    if (free.size() > 4 && measured < least_of_rivals * free.size()) continue;
     PlateModel from = model;
     from.order = 0;
     from.distortion.clear();
@@ -146,11 +164,43 @@ std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
     const double score = measured * std::log(std::max(fit->chi2 / fit->count, 1e-4)) -
                          2 * std::log(2.0) * (fit->count - all) * 2 +
                          free.size() * std::log(measured);
-    if (best && score >= least) continue;
-    best = fit;
-    least = score;
+    candidates.push_back({*fit, score});
+    // Outliers do not determine parameters.
+    const bool determined = free.size() <= 4 || 2.0 * fit->count >= least_measured * free.size();
+    if (determined && (!best || score < candidates[*best].score)) best = candidates.size() - 1;
   }
-  return best;
+  rivals.clear();
+  if (!best) return std::nullopt;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const double weight = std::exp(0.5 * (candidates[*best].score - candidates[i].score));
+    if (i != *best && weight >= least_weight)
+      rivals.push_back({std::move(candidates[i].fit), std::min(weight, 1.0)});
+  }
+  return std::move(candidates[*best].fit);
+}
+
+double PlateSolution::sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) const {
+  const double own = fit.sigma_px(direction, pixel);
+  double sum = own * own, weights = 1.0;
+  for (const PlateRival& rival : rivals) {
+    const auto at = rival.fit.model.pixel(direction);
+    if (!at) continue;
+    const PixelPosition off = *at - pixel;
+    const double sigma = rival.fit.sigma_px(direction, *at);
+    sum += rival.weight * (sigma * sigma + 0.5 * (off.x_px * off.x_px + off.y_px * off.y_px));
+    weights += rival.weight;
+  }
+  double variance = sum / weights;
+  const PlateModel& model = fit.model;
+  if ((fit.free.order < 3) && model.unit_px > 0.0) {
+    const PixelPosition at = pixel - model.centre;
+    const double r = std::hypot(at.x_px, at.y_px) / model.unit_px, known = reach_px / model.unit_px;
+    const double corner_px = fit.free.radial ? next_order * std::abs(model.distortion[radial_term])
+                                             : unknown_distortion * model.unit_px;
+    const double beyond_px = corner_px * std::max(0.0, r * r * r - known * known * known);
+    variance += 0.5 * beyond_px * beyond_px;
+  }
+  return std::sqrt(variance);
 }
 
 std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
@@ -177,13 +227,18 @@ std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
   double near_px = 2.0;
   for (int pass = 0; pass < 3; ++pass) {
     const auto pairs = pairs_within(near_px);
-    best = best_fit(model, pairs);
+    best = best_fit(model, pairs, solution.rivals);
     if (!best) return std::nullopt;
     model = best->model;
     solution.matches = pairs;
     near_px = std::clamp(5 * best->rms_px, 0.4, near_px);
   }
   solution.fit = *best;
+  for (std::size_t k = 0; k < solution.matches.size(); ++k) {
+    if (!best->used[k]) continue;
+    const PixelPosition at = solution.matches[k].pixel - centre();
+    solution.reach_px = std::max(solution.reach_px, std::hypot(at.x_px, at.y_px));
+  }
   solution.log_odds = log_odds(best->model, solution.stars, *best, solution.matches, count,
                                belief_.columns, belief_.rows);
   for (PlateMatch& m : solution.matches) m.source = original_[m.source];

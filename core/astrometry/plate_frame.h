@@ -33,12 +33,24 @@ struct PlateSearch {
   int most_order = 5;                     // of the distortion
 };
 
+/// A fit that leaves something else free and that the stars do not exclude.
+struct PlateRival {
+  PlateFit fit;
+  double weight = 0.0;  // odds against the fit that was chosen, by Bayes' information criterion
+};
+
 struct PlateSolution {
   PlateFit fit;
+  std::vector<PlateRival> rivals;
+  double reach_px = 0.0;  // from the frame's middle to the farthest star of the fit
   std::vector<SeenStar> stars;
   std::vector<PlateMatch> matches;  // of `stars` with sources, by the order given
   double log_odds = 0.0;            // that it is no chance match among all that were tried
   std::size_t tried = 0;            // candidates
+
+  /// Standard deviation of the plate's place of a direction along one axis [px]: of the fit, with
+  /// what its rivals say there and, beyond the stars, what a lens may do that no star shows.
+  double sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) const;
 };
 
 /// Compares a frame's sources with the sky: extends a guess of the plate over the frame and judges
@@ -72,9 +84,10 @@ class PlateFrame {
   std::optional<PlateSolution> fit(PlateModel model) const;
 
  private:
-  /// Fits matches with each of a list of freedoms and chooses by Bayes' information criterion.
-  std::optional<PlateFit> best_fit(const PlateModel& model,
-                                   std::span<const PlateMatch> pairs) const;
+  /// Fits matches with each of a list of freedoms and chooses by Bayes' information criterion. Puts
+  /// the others that may be right into `rivals`.
+  std::optional<PlateFit> best_fit(const PlateModel& model, std::span<const PlateMatch> pairs,
+                                   std::vector<PlateRival>& rivals) const;
   /// Stars about the frame, of which it shows somewhat more than it has sources.
   std::vector<SeenStar> stars_around(const PlateModel& model, std::size_t sources) const;
   double star_sigma_px(const PlateModel& model) const {

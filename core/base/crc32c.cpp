@@ -1,6 +1,8 @@
 #include "core/base/crc32c.h"
 
+#if defined(__x86_64__)
 #include <nmmintrin.h>
+#endif
 
 #include <array>
 #include <cstring>
@@ -36,6 +38,7 @@ std::uint32_t by_tables(const unsigned char* p, std::size_t size, std::uint32_t 
   return c;
 }
 
+#if defined(__x86_64__)
 /// With the SSE 4.2 instruction.
 __attribute__((target("sse4.2"))) std::uint32_t by_instruction(const unsigned char* p,
                                                                std::size_t size, std::uint32_t c) {
@@ -50,13 +53,18 @@ __attribute__((target("sse4.2"))) std::uint32_t by_instruction(const unsigned ch
   return c;
 }
 
+auto fastest(SimdLevel level) {
+  static const bool has_instruction = __builtin_cpu_supports("sse4.2");
+  return level != SimdLevel::sse2 && has_instruction ? by_instruction : by_tables;
+}
+#else
+auto fastest(SimdLevel) { return by_tables; }
+#endif
+
 }  // namespace
 
 std::uint32_t crc32c(const void* data, std::size_t size, std::uint32_t previous, SimdLevel level) {
-  static const bool has_instruction = __builtin_cpu_supports("sse4.2");
-  const auto* p = static_cast<const unsigned char*>(data);
-  const auto continued = level != SimdLevel::sse2 && has_instruction ? by_instruction : by_tables;
-  return ~continued(p, size, ~previous);
+  return ~fastest(level)(static_cast<const unsigned char*>(data), size, ~previous);
 }
 
 }  // namespace dmise

@@ -21,6 +21,11 @@ std::string formatted(const char* format, ...) {
   return text;
 }
 
+std::string counted(std::size_t number, const std::string& thing, const std::string& things) {
+  const std::string several = things.empty() ? thing + "s" : things;
+  return std::to_string(number) + " " + (number == 1 ? thing : several);
+}
+
 std::string shortest_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

@@ -1,5 +1,7 @@
 #pragma once
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <cstdint>
 
@@ -13,8 +15,11 @@
 #elif defined(__AVX2__)
 #define DMISE_SIMD avx2
 #define DMISE_SIMD_BYTES 32
-#else
+#elif defined(__x86_64__)
 #define DMISE_SIMD sse2
+#define DMISE_SIMD_BYTES 16
+#else
+#define DMISE_SIMD generic
 #define DMISE_SIMD_BYTES 16
 #endif
 #define DMISE_INLINE static inline __attribute__((always_inline))
@@ -73,12 +78,24 @@ DMISE_INLINE U64 multiply_low(U64 a, U64 b) {
 }
 DMISE_INLINE bool any(I32 m) { return _mm256_movemask_epi8((__m256i)m) != 0; }
 DMISE_INLINE bool any(I64 m) { return _mm256_movemask_epi8((__m256i)m) != 0; }
-#else
+#elif defined(__x86_64__)
 DMISE_INLINE F32 sqrt(F32 v) { return (F32)_mm_sqrt_ps((__m128)v); }
 DMISE_INLINE F64 sqrt(F64 v) { return (F64)_mm_sqrt_pd((__m128d)v); }
 DMISE_INLINE U64 multiply_low(U64 a, U64 b) { return (U64)_mm_mul_epu32((__m128i)a, (__m128i)b); }
 DMISE_INLINE bool any(I32 m) { return _mm_movemask_epi8((__m128i)m) != 0; }
 DMISE_INLINE bool any(I64 m) { return _mm_movemask_epi8((__m128i)m) != 0; }
+#else
+DMISE_INLINE F32 sqrt(F32 v) {
+  for (int i = 0; i < lanes; ++i) v[i] = __builtin_sqrtf(v[i]);
+  return v;
+}
+DMISE_INLINE F64 sqrt(F64 v) {
+  for (int i = 0; i < wide_lanes; ++i) v[i] = __builtin_sqrt(v[i]);
+  return v;
+}
+DMISE_INLINE U64 multiply_low(U64 a, U64 b) { return (a & 0xffffffffu) * (b & 0xffffffffu); }
+DMISE_INLINE bool any(I64 m) { return (m[0] | m[1]) != 0; }
+DMISE_INLINE bool any(I32 m) { return any((I64)m); }
 #endif
 DMISE_INLINE bool all(I32 m) { return !any(~m); }
 

@@ -52,6 +52,14 @@ int open_regular_file(const std::string& path) {
   return file;
 }
 
+int open_own_file(const char* path, int flags, mode_t mode) {
+  struct stat info {};
+  if (lstat(path, &info) == 0 && !S_ISDIR(info.st_mode) &&
+      (!S_ISREG(info.st_mode) || ((flags & O_TRUNC) != 0 && info.st_nlink > 1)))
+    unlink(path);
+  return open(path, flags | O_CREAT | O_NOFOLLOW | O_NOCTTY, mode);
+}
+
 std::string file_to_write(const char* option, const std::string& path) {
   namespace fs = std::filesystem;
   const auto refuse = [&](const std::string& reason) -> ConfigError {

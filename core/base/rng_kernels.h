@@ -1,5 +1,6 @@
 #pragma once
 #include "core/base/rng.h"
+#include "core/base/simd_sets.h"
 
 // The loops of rng.cpp, compiled once per instruction set.
 #define DMISE_RNG_KERNELS(level)                                                             \
@@ -11,7 +12,5 @@
                     std::uint32_t draw, std::uint32_t* out);                                 \
   void normals_of(const std::uint32_t* words, std::size_t count, float* out);                \
   }
-DMISE_RNG_KERNELS(sse2)
-DMISE_RNG_KERNELS(avx2)
-DMISE_RNG_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_RNG_KERNELS)
 #undef DMISE_RNG_KERNELS

@@ -5,6 +5,8 @@
 #include <string_view>
 
 namespace dmise {
+
+#if defined(__x86_64__)
 namespace {
 
 SimdLevel find_level() {
@@ -30,5 +32,10 @@ const char* name(SimdLevel level) {
   constexpr const char* names[] = {"sse2", "avx2", "avx512"};
   return names[static_cast<int>(level)];
 }
+#else
+SimdLevel best_simd_level() { return SimdLevel::generic; }
+
+const char* name(SimdLevel) { return "generic"; }
+#endif
 
 }  // namespace dmise

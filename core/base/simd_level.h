@@ -1,13 +1,25 @@
 #pragma once
+#include "core/base/simd_sets.h"
 
 namespace dmise {
 
 /// Instruction sets that kernels are compiled for. Pixel kernels give the same bytes on all of
 /// them: the same IEEE 754 operations on more or fewer lanes. Orbit kernels use fused multiply-adds
 /// where available and state how much their results differ.
-enum class SimdLevel { sse2, avx2, avx512 };
+enum class SimdLevel {
+#if defined(__x86_64__)
+  sse2,
+  avx2,
+  avx512
+#else
+  generic,
+  sse2 = generic,
+  avx2 = generic,
+  avx512 = generic
+#endif
+};
 
-/// Returns the best level that this processor supports (avx2 includes FMA); the environment
+/// Returns the best level that this processor supports (avx2 includes FMA); on x86 the environment
 /// variable `DMISE_SIMD=sse2|avx2|avx512` lowers it.
 SimdLevel best_simd_level();
 

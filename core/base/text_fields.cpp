@@ -88,6 +88,11 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string formula_free(const std::string& text) {
+  constexpr std::string_view beginnings = "=+-@\t\r";
+  return text.empty() || beginnings.find(text[0]) == beginnings.npos ? text : "'" + text;
+}
+
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view mark = "\xef\xbb\xbf";
   if (text.substr(0, mark.size()) == mark) text.remove_prefix(mark.size());

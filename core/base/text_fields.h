@@ -35,6 +35,10 @@ std::vector<std::string> csv_fields(std::string_view line);
 /// Returns a text as a field of CSV, in quotes if it needs them (RFC 4180).
 std::string csv_field(const std::string& text);
 
+/// Returns a text that spreadsheets do not take for a formula: what begins as one gets an
+/// apostrophe before it.
+std::string formula_free(const std::string& text);
+
 /// `text` without the UTF-8 byte order mark, if it begins with one.
 std::string_view without_byte_order_mark(std::string_view text);
 

@@ -8,13 +8,14 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace dmise {
 
 WholeFile::WholeFile(std::string path, bool empty)
     : path_(std::move(path)), partial_(partial_of(path_)) {
-  file_ =
-      open(partial_.c_str(), O_WRONLY | O_CLOEXEC | (empty ? O_CREAT | O_TRUNC : O_APPEND), 0644);
+  file_ = empty ? open_own_file(partial_.c_str(), O_WRONLY | O_CLOEXEC | O_TRUNC)
+                : open(partial_.c_str(), O_WRONLY | O_CLOEXEC | O_APPEND | O_NOFOLLOW);
   if (file_ < 0) fail("can't be created");
 }
 

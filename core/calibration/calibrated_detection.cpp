@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/calibration/known_defects.h"
 
 namespace dmise {
 namespace {
@@ -74,6 +75,13 @@ CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map
 
 CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Threads& threads,
                                                       bool blind) const {
+  const auto calibrated = without_hot_pixels(frame);
+  return detect_calibrated(calibrated ? *calibrated : frame, threads, blind);
+}
+
+CalibratedDetector::Result CalibratedDetector::detect_calibrated(const Frame& frame,
+                                                                 Threads& threads,
+                                                                 bool blind) const {
   const PixelMask* unusable = frame.unusable.pixels.empty() ? nullptr : &frame.unusable;
   const UnknownFacts& unknown = frame.header.unknown;
   const auto detected_by = [&](const FrameHeader& header) {
@@ -106,6 +114,8 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Thread
     after_solution(frame.counts, result.header);
   result.detection = detected_by(result.header);
   remove_found(result.header.unknown, result.notes);
+  const auto& assumed = result.solution->notes.assumed;
+  result.notes.assumed.insert(result.notes.assumed.end(), assumed.begin(), assumed.end());
   note_unused_catalogue(result.header.unknown, result.detection, result.notes);
   return result;
 }

@@ -28,10 +28,13 @@ class CalibratedDetector {
   /// Detects by the header if the frame's stars are where it says. If they are elsewhere, or if the
   /// header lacks what expecting them needs, solves the frame near the header's pointing and
   /// detects by the solution, if there is one. If `blind`, solves it without the header's pointing,
-  /// and throws `Error` if there is no solution.
+  /// and throws `Error` if there is no solution. Pixels that the camera knows to be hot are not
+  /// used.
   Result detect(const Frame& frame, Threads& threads, bool blind = false) const;
 
  private:
+  Result detect_calibrated(const Frame& frame, Threads& threads, bool blind) const;
+
   std::shared_ptr<const StarMap> map_;
   std::optional<CatalogueSky> sky_;
 };

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/units.h"
 #include "core/calibration/star_photometry.h"
 #include "core/calibration/star_sources.h"
 #include "core/detection/atmosphere.h"
@@ -15,9 +18,14 @@
 namespace dmise {
 namespace {
 
-Observer observer_of(const FrameHeader& header) {
-  if (header.unknown.has(FrameFact::time))
-    throw Error("places of stars need a time, which the header does not say");
+/// Without a time: of J2000. Its aberration moves a field, and bends it by less than 0.1 arcsec a
+/// degree.
+Observer observer_of(const FrameHeader& header, FrameNotes& notes) {
+  if (header.unknown.has(FrameFact::time)) {
+    const Tt j2000 = Clock(parse_utc("2000-01-01T11:58:55.816Z")).tt({});
+    notes.assumed.push_back("time: stars are taken where they were in 2000: without proper motion");
+    return space_observer({}, {}, j2000, solar_system(j2000));
+  }
   const Tt tt = Clock(parse_utc(header.middle_utc)).tt({});
   Observer o = space_observer(header.sensor_position_m, header.sensor_velocity_m_per_s, tt,
                               solar_system(tt));
@@ -49,8 +57,8 @@ PlateBelief belief_of(const Frame& frame, bool blind) {
 }
 
 /// The WCS of a plate: its sky is where the catalogue has the stars that it sees.
-Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
-  const PlateModel& model = fit.model;
+Wcs wcs_of(const PlateSolution& plate, const PlateSky& sky, int columns, int rows) {
+  const PlateModel& model = plate.fit.model;
   constexpr double pitch_m = 1e-5;  // any
   const Optics optics{.projection = model.projection,
                       .focal_length_m = model.focal_length_px * pitch_m,
@@ -73,7 +81,7 @@ Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
       const PixelPosition at{i * (columns - 1) / 8.0, j * (rows - 1) / 8.0};
       const auto direction = model.direction(at);
       if (!direction || (sky.air() && dot(*direction, sky.air()->zenith) < 0)) continue;
-      const double sigma = fit.sigma_px(*direction, at);
+      const double sigma = plate.sigma_px(*direction, at);
       sum += 2 * sigma * sigma;
       most = std::max(most, sigma);
       ++count;
@@ -81,6 +89,20 @@ Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
   if (count) wcs.rms_px = std::hypot(wcs.rms_px, std::sqrt(sum / count));
   wcs.max_px = std::hypot(wcs.max_px, 3 * most);
   return wcs;
+}
+
+/// Why no stars are where the header points, if its site and time put that below the horizon.
+std::string below_horizon(const PlateBelief& belief, const PlateSky& sky) {
+  auto axis = belief.axis;
+  if (belief.camera_from_gcrs)
+    axis = belief.camera_from_gcrs->inverse() * Vec<CameraFrame>{0, 0, 1};
+  if (!axis || !sky.air()) return {};
+  const double elevation_deg =
+      std::asin(std::clamp(dot(unit(*axis), sky.air()->zenith), -1.0, 1.0)) / deg;
+  if (elevation_deg > 0) return {};
+  return formatted(
+      "; the header's site and time put the middle of its field %.1f deg below the horizon",
+      -elevation_deg);
 }
 
 /// The plate near the believed axis; elsewhere, if there is none: headers may name a target that
@@ -102,21 +124,35 @@ PlateSolution solved_plate(std::span<const PlateSource> sources, PlateBelief bel
 FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
                           Threads& threads) {
   const FrameHeader& h = frame.header;
-  const PlateSky sky(stars, observer_of(h));
+  FrameSolution out;
+  const PlateSky sky(stars, observer_of(h, out.notes));
   const bool moves = !settings.blind && !h.unknown.has(FrameFact::pointing);
   const StarMotion motion(h, frame.counts.columns, frame.counts.rows);
-  const auto sources =
-      find_star_sources(frame.counts,
-                        {.gain_e_per_dn = h.gain_e_per_dn,
-                         .saturation_dn = h.saturation_dn - 5 * h.read_noise_e / h.gain_e_per_dn,
-                         .psf_fwhm_px = h.psf_fwhm_px,
-                         .motion = moves ? &motion : nullptr},
-                        threads);
-  FrameSolution out;
+  const StarSourceSettings search{
+      .gain_e_per_dn = h.gain_e_per_dn,
+      .saturation_dn = h.saturation_dn - 5 * h.read_noise_e / h.gain_e_per_dn,
+      .psf_fwhm_px = h.psf_fwhm_px,
+      .motion = moves ? &motion : nullptr};
+  const auto sources = find_star_sources(frame.counts, search, threads);
   out.sources = sources.size();
-  out.plate = solved_plate(sources, belief_of(frame, settings.blind), sky, settings);
-  out.wcs = wcs_of(out.plate.fit, sky, frame.counts.columns, frame.counts.rows);
-  out.zero_point = zero_point_of(frame, out.plate, sources, sky);
+  const PlateBelief belief = belief_of(frame, settings.blind);
+  try {
+    out.plate = solved_plate(sources, belief, sky, settings);
+  } catch (const Error& error) {
+    const bool by_focallen = h.unknown.has(FrameFact::pointing) && belief.focal_length_px > 0;
+    std::string why = error.what();
+    if (by_focallen && sources.size() >= 3) {
+      why += formatted(
+          " within 5 %% of the focal length of %.6g px, which is that of "
+          "FOCALLEN / XPIXSZ: --blind tries all",
+          belief.focal_length_px);
+    }
+    throw Error(why + below_horizon(belief, sky));
+  }
+  out.wcs = wcs_of(out.plate, sky, frame.counts.columns, frame.counts.rows);
+  if (h.unknown.has(FrameFact::exposure)) return out;
+  out.zero_point = zero_point_of(
+      frame, out.plate, light_by_psf(frame, solved_header(h, out), sources, search, threads), sky);
   return out;
 }
 
@@ -133,7 +169,7 @@ FrameHeader solved_header(const FrameHeader& header, const FrameSolution& soluti
   const auto middle = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]);
   for (std::size_t i = 0; i < 3; ++i)  // turns during the exposure as believed
     h.camera_from_gcrs[i] = quaternion_of(
-        rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[i]) * middle.inverse() * upright);
+        upright * middle.inverse() * rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[i]));
   h.unknown.remove(FrameFact::pointing);
   h.unknown.remove(FrameFact::focal_length);
   if (const auto& z = solution.zero_point) {
@@ -168,6 +204,7 @@ std::string to_json(const FrameSolution& solution, const FrameHeader& header,
   if (fit.free.focal_length) json.value("focal_length");
   if (fit.free.centre) json.value("centre");
   if (fit.free.order > 0) json.value("distortion");
+  if (fit.free.radial) json.value("radial_distortion");
   json.end_array().list("covariance", fit.covariance);
   json.field("wcs_rms_px", solution.wcs.rms_px).field("wcs_max_px", solution.wcs.max_px);
   json.key("zero_point");
@@ -183,8 +220,11 @@ std::string to_json(const FrameSolution& solution, const FrameHeader& header,
   } else {
     json.null();
   }
-  if (!notes.missing.empty()) json.list("missing", notes.missing);
-  if (!notes.assumed.empty()) json.list("assumed", notes.assumed);
+  FrameNotes all = notes;
+  all.assumed.insert(all.assumed.end(), solution.notes.assumed.begin(),
+                     solution.notes.assumed.end());
+  if (!all.missing.empty()) json.list("missing", all.missing);
+  if (!all.assumed.empty()) json.list("assumed", all.assumed);
   json.end_object();
   return json.take();
 }

@@ -23,11 +23,12 @@ struct FrameSolution {
   Wcs wcs;  // astrometric, so annual aberration and refraction are in it
   std::optional<ZeroPoint> zero_point;
   std::size_t sources = 0;
+  FrameNotes notes;  // of what it took for granted, beside the frame's
 };
 
 /// Solves a frame by its counts and its header's site, time, lens and detector. The header's
-/// pointing, or RA and DEC alone, is a hint; without one the whole sky is searched. Throws `Error`
-/// if there is no solution or the header has no time.
+/// pointing, or RA and DEC alone, is a hint; without one the whole sky is searched. A frame without
+/// a time is solved at J2000, which is noted. Throws `Error` if there is no solution.
 FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
                           Threads& threads);
 

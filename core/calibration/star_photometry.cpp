@@ -14,12 +14,13 @@
 namespace dmise {
 namespace {
 
-constexpr double common_error_mag = 0.01;  // of the stars' measurement, equal for all
-constexpr double least_snr = 12.0;         // of stars that are found however noise dims them
-constexpr double low_deviations = 2.5;     // of the stars' scatter, by which they may be fainter
-constexpr double most_shared = 0.1;        // of a star's light, from neighbours
-constexpr double most_airmass = 3.0;       // scintillation, haze and the band's width below
-constexpr std::size_t enough_stars = 20;   // to do without others
+constexpr double common_error_mag = 0.01;   // of the stars' measurement, equal for all
+constexpr double gaussian_error_mag = 0.1;  // likewise, by Gaussians: wings are 0 to 0.23 mag
+constexpr double least_snr = 12.0;          // of stars that are found however noise dims them
+constexpr double low_deviations = 2.5;      // of the stars' scatter, by which they may be fainter
+constexpr double most_shared = 0.1;         // of a star's light, from neighbours
+constexpr double most_airmass = 3.0;        // scintillation, haze and the band's width below
+constexpr std::size_t enough_stars = 20;    // to do without others
 constexpr std::size_t complete_sources = 1000;  // fewer were not cut off at a number
 
 /// A matched star with its expected and its measured light.
@@ -145,12 +146,12 @@ double cut_e(std::span<const PlateSource> sources) {
 }  // namespace
 
 std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
-                                       std::span<const PlateSource> sources, const PlateSky& sky) {
+                                       const MeasuredStars& light, const PlateSky& sky) {
   if (frame.header.unknown.has(FrameFact::exposure)) return std::nullopt;
-  std::vector<Candidate> candidates = candidates_of(frame, plate, sources, sky);
+  std::vector<Candidate> candidates = candidates_of(frame, plate, light.sources, sky);
   std::optional<double> believed = sky.air() ? frame.header.extinction_mag_per_airmass : 0.0;
   if (sky.air() && frame.header.unknown.has(FrameFact::extinction)) believed.reset();
-  const double listed_e = cut_e(sources);
+  const double listed_e = cut_e(light.sources);
   std::vector<PhotometricStar> stars;
   for (const Candidate& c : candidates) stars.push_back(c.star);
   auto z = fit_zero_point(stars, believed);
@@ -177,7 +178,8 @@ std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& 
     if (!next) break;
     z = next;
   }
-  if (z) z->covariance[0][0] += common_error_mag * common_error_mag;
+  const double common_mag = light.by_psf ? common_error_mag : gaussian_error_mag;
+  if (z) z->covariance[0][0] += common_mag * common_mag;
   return z;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
-#include <span>
 
 #include "core/astrometry/plate_frame.h"
 #include "core/astrometry/zero_point.h"
+#include "core/calibration/measured_stars.h"
 #include "core/image/fits_file.h"
 
 namespace dmise {
@@ -13,6 +13,6 @@ namespace dmise {
 /// that noise brightens; stars on which others shine are left out, the light that a lens with a
 /// table loses is added. Empty without an exposure or a star.
 std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
-                                       std::span<const PlateSource> sources, const PlateSky& sky);
+                                       const MeasuredStars& light, const PlateSky& sky);
 
 }  // namespace dmise

@@ -5,12 +5,13 @@
 #include "core/base/units.h"
 #include "core/config/cn2_file.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 #include "core/sky/extinction.h"
 
 namespace dmise {
 namespace {
 
-Forms share() { return form::number(0.0, 1.0); }
+Forms air_share() { return form::number(0.0, 1.0); }
 
 std::vector<Key> turbulence_keys() {
   return {
@@ -35,9 +36,9 @@ const Section& clouds_section() {
   static const Section section{
       "clouds",
       "Clouds: a veil of one transmission, or patches that the wind carries.",
-      {optional("cover", share(), "Share of the sky that patches cover. Without it: a veil."),
-       optional("transmission", share(), "Of a veil, or of the middle of a patch at the zenith.",
-                "0.1"),
+      {optional("cover", air_share(), "Share of the sky that patches cover. Without it: a veil."),
+       optional("transmission", air_share(),
+                "Of a veil, or of the middle of a patch at the zenith.", "0.1"),
        optional("patch_m", form::number(10.0, 1e6), "Size of the largest patches [m].", "3000"),
        optional("height_m", form::number(10.0, 20e3), "Height above the site [m].", "3000"),
        optional("wind_east_m_per_s", form::number(-200.0, 200.0), "Wind towards east [m/s].", "8"),
@@ -118,8 +119,8 @@ const Section& weather_section() {
       "The weather at the site. Without pressure a standard atmosphere by height is taken.",
       {optional("pressure_hpa", form::number(0.0, 1100.0), "Air pressure [hPa]."),
        optional("temperature_c", form::number(-90.0, 60.0), "Air temperature [deg C]."),
-       optional("humidity", share(), "Relative humidity."),
-       optional("clouds", share() | form::map(clouds_section),
+       optional("humidity", air_share(), "Relative humidity."),
+       optional("clouds", air_share() | form::map(clouds_section),
                 "Transmission of a veil, or clouds."),
        optional("pwv_mm", form::number(0.0, 100.0),
                 "Precipitable water [mm]; with it water vapour and oxygen absorb in their bands.",

@@ -2,7 +2,6 @@
 #include <optional>
 #include <string>
 
-#include "core/config/yaml_reader.h"
 #include "core/optics/seeing.h"
 #include "core/photometry/curve.h"
 #include "core/sky/clouds.h"
@@ -11,6 +10,9 @@
 
 // The air above a site, and the weather in it.
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Turbulence above a site, and the wind that moves it.
 struct TurbulenceConfig {

@@ -2,6 +2,7 @@
 
 #include "core/base/units.h"
 #include "core/config/vector_values.h"
+#include "core/config/yaml_reader.h"
 #include "core/orbit/attitude_table.h"
 
 namespace dmise {
@@ -63,7 +64,8 @@ const Section& attitude_section() {
       "How an object is turned; one of these.",
       {optional("inertial", form::map(inertial_section), "Fixed relative to the stars."),
        optional("spinning", form::map(spinning_section), "Turns about an axis of its own."),
-       optional("table", form::text(), "A CSV file of time_s, w, x, y, z over the whole run.")}};
+       optional("table", form::text(), "A CSV file of time_s, w, x, y, z over the whole run."),
+       optional("node", form::text(), "A node of `nodes` says how it is turned at every tick.")}};
   return section;
 }
 
@@ -79,15 +81,19 @@ AttitudeConfig read_attitude(const YamlValue& value) {
   }
   YamlMap map(value, attitude_section());
   const auto inertial = map.find("inertial"), spinning = map.find("spinning"),
-             table = map.find("table");
+             table = map.find("table"), node = map.find("node");
   map.done();
   if (map.keys().size() != 1)
-    value.fail("give nadir, sun_tracking, or one of inertial, spinning, table", false);
+    value.fail("give nadir, sun_tracking, or one of inertial, spinning, table, node", false);
   if (inertial) attitude.model = read_inertial(*inertial);
   if (spinning) attitude.model = read_spinning(*spinning);
   if (table) {
     attitude.table_path = table->existing_file();
     attitude.model = read_attitude_table(attitude.table_path);
+  }
+  if (node) {
+    attitude.node_where = node->place();
+    attitude.model = NodeAttitude{.node = node->text()};
   }
   return attitude;
 }

@@ -7,6 +7,7 @@
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 #include "core/photometry/curve_file.h"
 #include "core/photometry/spectrum.h"
 

@@ -1,8 +1,10 @@
 #pragma once
-#include "core/config/yaml_reader.h"
+#include "core/config/section.h"
 #include "core/photometry/band.h"
 
 namespace dmise {
+
+class YamlValue;
 
 /// Reads `band:` of a camera: the name of a filter (`bessell-V`, `sdss-g`, ...), or a mapping with
 /// either `filter` (such a name, or a CSV file of a transmission, see `parse_curve`) or `centre_m`

@@ -7,6 +7,7 @@
 #include "core/config/exclusion_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/plausibility.h"
+#include "core/config/yaml_reader.h"
 #include "core/optics/psf_table.h"
 #include "core/photometry/magnitude.h"
 

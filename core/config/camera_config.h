@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Reads a camera: the name of a preset, a path, or the mapping itself. The keys are those of
 /// launch/cameras/*.yaml.

@@ -1,6 +1,7 @@
 #include "core/config/detector_config.h"
 
 #include "core/base/formatted.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {

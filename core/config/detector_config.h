@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Reads `detector:` of a camera: the fields of `Detector` by name. Throws `ConfigError` for
 /// invalid parameters.

@@ -5,7 +5,9 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/nearest_name.h"
 #include "core/base/text_fields.h"
+#include "core/config/yaml_reader.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 
@@ -16,6 +18,7 @@ constexpr double far_sigmas = 5.0;       // where a normal without ends is tried
 constexpr double least_share = 0.01;     // of a normal between min and max
 constexpr double most_integer = 0x1p53;  // exact in double
 constexpr std::uint32_t most_draws = 10'000;
+const std::vector<std::string> of_lists{"uniform", "log_uniform", "integers", "one_of"};
 
 /// Uniform in (0, 1) with 53 bits.
 double uniform_53(const RngKey& key, std::uint32_t draw) {
@@ -50,8 +53,25 @@ bool Distribution::is(const YAML::Node& node) {
   if (!entry->first.IsScalar()) return false;
   const std::string& name = entry->first.Scalar();
   if (name == "normal") return entry->second.IsMap();  // of a panel it is a list
-  return entry->second.IsSequence() &&
-         (name == "uniform" || name == "log_uniform" || name == "integers" || name == "one_of");
+  return entry->second.IsSequence() && std::ranges::find(of_lists, name) != of_lists.end();
+}
+
+std::string Distribution::meant_by(const YAML::Node& node) {
+  if (!node.IsMap() || node.size() != 1 || is(node)) return "";
+  const auto entry = node.begin();
+  if (!entry->first.IsScalar()) return "";
+  const std::string& name = entry->first.Scalar();
+  const std::vector<std::string> names =
+      entry->second.IsSequence() ? of_lists : std::vector<std::string>{"normal"};
+  if (name == "normal" || entry->second.IsScalar() || entry->second.IsNull()) return "";
+  return nearest_name(name, names);
+}
+
+void Distribution::refuse_misspelt(const YamlValue& value) {
+  if (const std::string meant = meant_by(value.node()); !meant.empty())
+    YamlMap(value)
+        .require(value.node().begin()->first.Scalar())
+        .fail("unknown key, did you mean " + meant + "?", false);
 }
 
 Distribution::Distribution(const YamlValue& value) : value_(value) {
@@ -179,7 +199,7 @@ std::vector<Distribution::Value> Distribution::ends() const {
 namespace {
 
 bool has_distribution(const YAML::Node& node) {
-  if (Distribution::is(node)) return true;
+  if (Distribution::is(node) || !Distribution::meant_by(node).empty()) return true;
   if (node.IsMap())
     return std::any_of(node.begin(), node.end(),
                        [](const auto& entry) { return has_distribution(entry.second); });
@@ -188,6 +208,7 @@ bool has_distribution(const YAML::Node& node) {
 }
 
 void refuse_within(const YamlValue& value, const std::string& reason) {
+  Distribution::refuse_misspelt(value);
   if (Distribution::is(value.node()))
     value.fail("is a distribution (" + YamlMap(value).keys().front() + "): " + reason, false);
   if (value.is_map()) {

@@ -24,6 +24,10 @@ class Distribution {
 
   /// Whether a value is a distribution, well-formed or not.
   static bool is(const YAML::Node& node);
+  /// Name of the distribution that a value has the form of, under a name that is near; else empty.
+  static std::string meant_by(const YAML::Node& node);
+  /// Throws `ConfigError` with that name if there is one.
+  static void refuse_misspelt(const YamlValue& value);
   /// Throws `ConfigError` with place, reason and value for ends in the wrong order, a list that is
   /// empty, a normal that has less than 1 % between min and max.
   explicit Distribution(const YamlValue& value);
@@ -54,7 +58,7 @@ class Distribution {
 };
 
 /// Throws `ConfigError` with the place of the first distribution in a file, if there is one, and
-/// the reason.
+/// the reason; and for what is a distribution but for a misspelt name.
 void refuse_distributions(const YamlValue& root, const std::string& reason);
 
 }  // namespace dmise

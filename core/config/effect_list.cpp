@@ -10,6 +10,7 @@
 #include "core/config/instrument_config.h"
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
+#include "core/effects/plan_facts.h"
 #include "core/facets/earthshine.h"
 #include "core/facets/moonlight.h"
 #include "core/optics/air_turbulence.h"

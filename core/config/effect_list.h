@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/config/scenario.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/plannable_effect.h"
 
 namespace dmise {
 

@@ -5,6 +5,7 @@
 
 #include "core/base/formatted.h"
 #include "core/config/effect_list.h"
+#include "core/config/yaml_reader.h"
 #include "core/effects/frame_effects.h"
 #include "core/sky/place_effects.h"
 

@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/section.h"
 
 namespace dmise {
+
+class YamlValue;
 
 /// Reads `effects:` of a scenario or a sensor and applies it to `effects`. Throws `ConfigError`.
 void read_effects(const YamlValue& value, EffectSet& effects);

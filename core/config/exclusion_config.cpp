@@ -2,6 +2,8 @@
 
 #include <iterator>
 
+#include "core/config/yaml_reader.h"
+
 namespace dmise {
 namespace {
 

@@ -1,9 +1,11 @@
 #pragma once
 #include "core/base/json.h"
-#include "core/config/yaml_reader.h"
 #include "core/optics/exclusion.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// The keys of `exclusion` of a camera.
 const Section& exclusion_section();

@@ -6,6 +6,7 @@
 
 #include "core/base/formatted.h"
 #include "core/base/text_fields.h"
+#include "core/config/yaml_reader.h"
 #include "core/optics/pupil.h"
 
 namespace dmise {

@@ -1,11 +1,13 @@
 #pragma once
 #include "core/base/json.h"
-#include "core/config/yaml_reader.h"
 #include "core/optics/camera.h"
 
 // The optics of a camera that depend on the distance from the axis or on time: vignetting, the
 // point spread over the field, stray light, the drift of the focus.
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 const Section& vignetting_section();
 const Section& psf_field_section();

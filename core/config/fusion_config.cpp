@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/formatted.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -49,6 +50,10 @@ const Section& fusion_section() {
                 std::to_string(FusionSettings().arc_exposures)),
        optional("acceleration_noise_m2_per_s3", form::number(0.0, 1.0),
                 "Process noise of the filter [m^2/s^3].", "1e-06"),
+       optional("pointing_sigma_arcsec", form::number(0.0, 3600.0),
+                "Error of a frame's directions that its detections do not know [arcsec]: jitter, "
+                "bias, drift.",
+                "0"),
        optional("cue_delay_ticks", form::integer(1, 100000),
                 "Ticks between the decision for a task and its beginning.", "2"),
        optional("not_in_catalogue", form::list(form::text()),
@@ -79,6 +84,7 @@ FusionConfig read_fusion(const YamlValue& value) {
   }
   s.acceleration_noise_m2_per_s3 =
       map.number_or("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
+  s.pointing_sigma_arcsec = map.number_or("pointing_sigma_arcsec", s.pointing_sigma_arcsec);
   config.cue_delay_ticks = map.integer_or("cue_delay_ticks", config.cue_delay_ticks);
   if (const auto names = map.find("not_in_catalogue"))
     for (const auto& name : names->list()) {

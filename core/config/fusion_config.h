@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Reads `fusion:` of a scenario. Throws `ConfigError`.
 FusionConfig read_fusion(const YamlValue& value);

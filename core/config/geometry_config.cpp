@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "core/config/material_config.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 #include "core/materials/obj_file.h"
 #include "core/materials/shapes.h"
 

@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "core/config/yaml_reader.h"
 #include "core/materials/panel.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Shape of an object: `geometry: {model: box-wing, body: kapton, ..}` or `{obj: FILE}`.
 struct GeometryConfig {

@@ -2,6 +2,7 @@
 
 #include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {

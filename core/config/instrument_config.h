@@ -1,9 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/section.h"
 
 namespace dmise {
 
+class YamlMap;
 class JsonWriter;
 
 /// Reads `clock_error` and `pointing_error` of a sensor.

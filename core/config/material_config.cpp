@@ -3,12 +3,13 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
 
-Forms share() { return form::number(0.0, 1.0); }
-Forms curve() { return share() | form::list(share()); }
+Forms material_share() { return form::number(0.0, 1.0); }
+Forms curve() { return material_share() | form::list(material_share()); }
 
 const Section& material_section() {
   static const Section section{
@@ -24,14 +25,16 @@ const Section& material_section() {
        optional("specular", curve(), "Specular part, of phong."),
        optional("exponent", form::number(0.0, 1e5), "Exponent of the lobe, of phong."),
        optional("emissivity", curve(), "Emissivity, of sandford-robertson."),
-       optional("diffuse_share", share(), "Diffuse share of `reflectance`, of sandford-robertson."),
+       optional("diffuse_share", material_share(),
+                "Diffuse share of `reflectance`, of sandford-robertson."),
        optional("grazing", form::number(0.0, 10.0),
                 "Growth towards grazing angles, of sandford-robertson."),
        optional("lobe_width", form::number(0.001, 1.0),
                 "Width of the lobe, of sandford-robertson."),
        optional("temperature_k", form::number(0.0, 3000.0),
                 "Temperature of the surface [K]; 0 emits nothing.", "0"),
-       optional("thermal_emissivity", share(), "Emissivity at thermal wavelengths.", "0")}};
+       optional("thermal_emissivity", material_share(), "Emissivity at thermal wavelengths.",
+                "0")}};
   return section;
 }
 

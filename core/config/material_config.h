@@ -4,10 +4,12 @@
 #include <string>
 #include <string_view>
 
-#include "core/config/yaml_reader.h"
 #include "core/materials/material.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Materials by name, from a file in the format of launch/materials/library.yaml.
 class MaterialLibrary {

@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/config/plausibility.h"
 #include "core/config/vector_values.h"
+#include "core/config/yaml_reader.h"
 #include "core/frames/geodesy.h"
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/geodetic_track.h"
@@ -220,7 +221,8 @@ const Section& motion_section() {
                 "A CSV file of time_s, latitude_deg, longitude_deg, height_m."),
        optional("enu", form::map(enu_motion_section),
                 "In east, north and up of the scenario's origin."),
-       optional("sgp4", form::map(sgp4_section), "One element set.")}};
+       optional("sgp4", form::map(sgp4_section), "One element set."),
+       optional("node", form::text(), "A node of `nodes` says where it is at every tick.")}};
   return section;
 }
 
@@ -229,10 +231,11 @@ MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::st
   YamlMap map(value, motion_section());
   MotionConfig motion;
   const auto two_body = map.find("two_body"), oem = map.find("oem"), fixed = map.find("fixed"),
-             track = map.find("track"), enu = map.find("enu"), sgp4 = map.find("sgp4");
+             track = map.find("track"), enu = map.find("enu"), sgp4 = map.find("sgp4"),
+             node = map.find("node");
   map.done();
   if (map.keys().size() != 1)
-    value.fail("give one of two_body, oem, fixed, track, enu, sgp4", false);
+    value.fail("give one of two_body, oem, fixed, track, enu, sgp4, node", false);
   if (enu) return read_enu(*enu, start, name, earth);
   if (two_body)
     motion.model = MotionModel(read_two_body(*two_body, start, earth.ellipsoid, motion.warnings));
@@ -243,6 +246,10 @@ MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::st
         read_geodetic_track(motion.trajectory_path, Clock(start).tai({0}), name, earth.ellipsoid));
   if (fixed) motion.model = read_fixed(*fixed, earth.ellipsoid);
   if (sgp4) motion.model = read_sgp4(*sgp4);
+  if (node) {
+    motion.node_where = node->place();
+    motion.model = MotionModel(NodeMotion{.node = node->text()});
+  }
   return motion;
 }
 

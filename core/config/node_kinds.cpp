@@ -16,6 +16,11 @@ const std::vector<NodeKind> table{
      .program = "dmise-environment-node",
      .topics = {"env/common", "env/site/"},
      .wanted = always},
+    {.name = any_own_node,
+     .program = "dmise-own-node",
+     .topics = {"state/actor/"},
+     .wanted = [](const Scenario& s) { return !s.own_nodes.empty(); },
+     .each_own_node = true},
     {.name = any_sensor,
      .program = "dmise-sensor-node",
      .topics = {"frame/", "detection/", "truth/"},
@@ -38,21 +43,33 @@ bool is_sensor(const std::string& name, const Scenario& scenario) {
   return std::ranges::any_of(scenario.sensors, [&](const auto& s) { return s.name == name; });
 }
 
+bool is_own_node(const std::string& name, const Scenario& scenario) {
+  return std::ranges::any_of(scenario.own_nodes, [&](const auto& n) { return n.name == name; });
+}
+
+bool is_of(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
+  if (kind.each_sensor) return is_sensor(name, scenario);
+  return kind.each_own_node ? is_own_node(name, scenario) : name == kind.name;
+}
+
 }  // namespace
 
 std::span<const NodeKind> node_kinds() { return table; }
 
 const NodeKind* kind_of_node(const std::string& name, const Scenario& scenario) {
   for (const NodeKind& kind : table)
-    if (kind.each_sensor ? is_sensor(name, scenario) : name == kind.name) return &kind;
+    if (is_of(kind, name, scenario)) return &kind;
   return nullptr;
 }
 
 std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario) {
   if (!kind.wanted(scenario)) return {};
-  if (!kind.each_sensor) return {kind.name};
+  if (!kind.each_sensor && !kind.each_own_node) return {kind.name};
   std::vector<std::string> names;
-  for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
+  if (kind.each_sensor)
+    for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
+  else
+    for (const auto& node : scenario.own_nodes) names.push_back(node.name);
   return names;
 }
 

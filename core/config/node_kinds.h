@@ -9,17 +9,18 @@ namespace dmise {
 
 inline constexpr const char *orbit_node = "orbit-node", *environment_node = "environment-node",
                             *positions_node = "positions-node", *fusion_node = "fusion-node",
-                            *any_sensor = "sensor";
+                            *any_sensor = "sensor", *any_own_node = "own-node";
 
 /// A kind of node of a run. To add one: write its participant and its program, give it a row here
 /// and a maker in launch/node_makers.cpp, and a service in launch/stack/compose.yaml.
 struct NodeKind {
-  const char* name;                 // node name, unless each sensor is a node
+  const char* name;                 // node name, unless each sensor or own node is one
   const char* program;              // in the directory of the command
-  std::vector<std::string> topics;  // published; a sensor's name is appended to a trailing /
+  std::vector<std::string> topics;  // published; a sensor's or own node's name follows a trailing /
   bool (*wanted)(const Scenario&);
   bool writes_products = false;  // into the directory of the run
   bool each_sensor = false;
+  bool each_own_node = false;  // of `nodes`: runs a program of the user's
 };
 
 /// The table of kinds, in the order in which their nodes are started and called.

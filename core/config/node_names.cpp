@@ -43,7 +43,7 @@ std::optional<std::string> fault_of_name(const std::string& name) {
   return std::nullopt;
 }
 
-std::optional<std::string> SensorNames::fault_of(const std::string& name) {
+std::optional<std::string> NodeNames::fault_of(const std::string& name) {
   if (auto fault = fault_of_name(name)) return fault;
   const std::string lower = lower_case(name);
   if (std::ranges::find(directories, lower) != std::end(directories))

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -22,9 +23,9 @@ const Section& source_section() {
   static const Section section{
       "catalogue", "Objects of a catalogue.",
       with_keys(
-          {required("catalogue", form::text({"gpredict"}),
-                    "`gpredict`, or a file of TLE, 3LE, OMM or gpredict element sets beside the "
-                    "scenario."),
+          {required("catalogue", form::text({default_object_catalogue}),
+                    "`demo` (979 objects of January 2018), or a file of TLE, 3LE, OMM or gpredict "
+                    "element sets beside the scenario."),
            optional("facts", form::text(), "A CSV file of sizes and albedos of known objects."),
            optional("only", form::list(form::text()),
                     "Numbers or names of the objects to take; without it all are taken.")},
@@ -62,10 +63,13 @@ ObjectSource read_object_source(const YamlValue& value) {
   const auto catalogue = map.require("catalogue");
   source.where = catalogue.place();
   source.named = catalogue.text();
-  source.path =
-      source.named == "gpredict" ? find_catalogue("satellites.dat") : catalogue.existing_file();
-  if (source.path.empty())
-    catalogue.fail("Debian's gpredict catalogue is missing; ./dmise setup fetches it");
+  if (const char* file = object_catalogue_file(source.named)) {
+    source.named = default_object_catalogue;
+    source.path = find_catalogue(file);
+    if (source.path.empty()) catalogue.fail(missing_catalogue(file));
+  } else {
+    source.path = catalogue.existing_file();
+  }
   source.sphere = read_sphere(map);
   if (const auto facts = map.find("facts")) source.facts_path = facts->existing_file();
   if (const auto only = map.find("only")) {

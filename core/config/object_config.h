@@ -8,15 +8,18 @@
 #include "core/config/geometry_config.h"
 #include "core/config/motion_config.h"
 #include "core/config/panel_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/section.h"
 #include "core/photometry/diffuse_sphere.h"
+#include "core/time/julian_date.h"
 
 namespace dmise {
 
-/// A catalogue of element sets: `{catalogue: gpredict}`.
+class YamlValue;
+
+/// A catalogue of element sets: `{catalogue: demo}`.
 struct ObjectSource {
   std::string path;                     // resolved
-  std::string named;                    // as in the scenario: "gpredict" or a path
+  std::string named;                    // as in the scenario: "demo" or a path
   DiffuseSphere sphere;                 // of objects of which no facts are known
   std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
@@ -35,6 +38,15 @@ struct OwnObject {
   std::optional<GeometryConfig> geometry;
   DiffuseSphere sphere;  // without a geometry
 };
+
+/// How a node of the user's moves or turns an object; null: none does.
+inline const NodeMotion* motion_by_node(const OwnObject& object) {
+  const auto* model = std::get_if<MotionModel>(&object.motion.model);
+  return model ? std::get_if<NodeMotion>(model) : nullptr;
+}
+inline const NodeAttitude* attitude_by_node(const OwnObject& object) {
+  return object.attitude ? std::get_if<NodeAttitude>(&object.attitude->model) : nullptr;
+}
 
 /// First catalogue number assigned to objects without one, in the scenario's order: products
 /// identify objects by number, and catalogues stay below.

@@ -33,6 +33,7 @@ struct MotionWriter {
     write(json, "itrs_m_per_s", m.state.velocity_m_per_s);
   }
   void operator()(const Trajectory&) const { json.field("oem", true); }  // the file has a digest
+  void operator()(const NodeMotion& m) const { json.field("motion_node", m.node); }
   void operator()(const MotionModel& m) const { std::visit(*this, m); }
   void operator()(const MeanElements& e) const {
     json.list("sgp4", {e.epoch_jd1, e.epoch_jd2, e.mean_motion_rad_per_min, e.eccentricity,
@@ -57,6 +58,7 @@ struct AttitudeWriter {
     json.field("rate_rad_per_s", a.rate_rad_per_s).end_object();
   }
   void operator()(const TableAttitude&) const { json.field("attitude", "table"); }
+  void operator()(const NodeAttitude& a) const { json.field("attitude_node", a.node); }
 };
 
 void write_own(JsonWriter& json, const OwnObject& object) {

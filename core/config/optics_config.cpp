@@ -7,6 +7,7 @@
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/config/field_tables_config.h"
+#include "core/config/yaml_reader.h"
 #include "core/optics/projection.h"
 
 namespace dmise {

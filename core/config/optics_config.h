@@ -1,10 +1,12 @@
 #pragma once
 #include "core/base/json.h"
-#include "core/config/yaml_reader.h"
 #include "core/optics/camera.h"
 #include "core/optics/seeing.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Reads `optics:` of a camera; the keys are those of docs/models/optics.md.
 Optics read_optics(const YamlValue& value);

@@ -1,5 +1,7 @@
 #include "core/config/output_config.h"
 
+#include "core/config/yaml_reader.h"
+
 namespace dmise {
 namespace {
 

@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Reads `output:` of a scenario. Throws `ConfigError`.
 OutputConfig read_output(const YamlValue& value);

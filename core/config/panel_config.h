@@ -4,6 +4,9 @@
 
 namespace dmise {
 
+class YamlValue;
+struct Section;
+
 /// Reads `{hinge: [x, y, z], normal: [x, y, z], hinge_m: [x, y, z]}` in body axes. Without a
 /// geometry (null) the panel is one of which others are told. Throws `ConfigError` for a geometry
 /// without a panel.

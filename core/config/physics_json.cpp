@@ -94,6 +94,8 @@ void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
   if (s.arc_exposures != FusionSettings{}.arc_exposures)
     json.field("arc_exposures", std::int64_t(s.arc_exposures));
   json.field("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
+  if (s.pointing_sigma_arcsec != FusionSettings{}.pointing_sigma_arcsec)
+    json.field("pointing_sigma_arcsec", s.pointing_sigma_arcsec);
   json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
   json.list("not_in_catalogue", fusion.not_in_catalogue).end_object();
 }
@@ -121,6 +123,7 @@ std::string physics_json(const Scenario& scenario) {
   for (const auto& sensor : scenario.sensors) write_sensor(json, sensor);
   json.end_array();
   if (scenario.fusion) write_fusion(json, *scenario.fusion);
+  if (!scenario.own_nodes.empty()) write_own_nodes(json, scenario.own_nodes);
   return json.end_object().take();
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/base/formatted.h"
 #include "core/base/units.h"
+#include "core/config/yaml_reader.h"
 #include "core/frames/geodesy.h"
 
 namespace dmise {

@@ -3,9 +3,10 @@
 #include <vector>
 
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
 
 namespace dmise {
+
+class YamlValue;
 
 // Warnings of values that a model can compute with but no telescope or orbit has, mostly errors of
 // a unit. Each line is `file:line:column: key: reason, got value`; empty: all values are usual.

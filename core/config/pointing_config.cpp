@@ -6,12 +6,13 @@
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/config/vector_values.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
 
-constexpr double least_sine = 1e-6;       // between boresight and up
-constexpr double most_offset_deg = 80.0;  // of a target's image from the boresight
+constexpr double least_sine_to_up = 1e-6;  // between boresight and up
+constexpr double most_offset_deg = 80.0;   // of a target's image from the boresight
 
 constexpr const char* tracking_names[] = {"fixed", "sidereal", "target", "moving"};
 
@@ -138,7 +139,7 @@ PointBody read_body(const YamlValue& value) {
   const Vec<Body> z = direction_of<Body>(*boresight);
   const Vec<Body> least = std::abs(z.z) < 0.9 ? Vec<Body>{0, 0, 1} : Vec<Body>{0, 1, 0};
   const Vec<Body> upwards = up ? direction_of<Body>(*up) : least;
-  if (norm(cross(z, upwards)) < least_sine) up->fail("must not be along boresight", false);
+  if (norm(cross(z, upwards)) < least_sine_to_up) up->fail("must not be along boresight", false);
   const Vec<Body> x = unit(cross(z, upwards)), y = cross(z, x);
   PointBody body;
   body.body_from_camera.m = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
@@ -158,7 +159,7 @@ PointEnu read_enu(const YamlValue& value, const std::optional<Site>& origin) {
     return enu;
   }
   enu.look = direction_of<Enu>(*look);
-  if (norm(cross(enu.look, enu.up)) >= least_sine) return enu;
+  if (norm(cross(enu.look, enu.up)) >= least_sine_to_up) return enu;
   if (up) up->fail("must not be along look", false);
   enu.up = {0, 1, 0};  // along the vertical north is up
   return enu;

@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/section.h"
 
 namespace dmise {
+
+class YamlValue;
 
 /// Reads `pointing:` of a sensor, including `tracking` and `roll_deg`; `origin` is the scenario's.
 /// Throws `ConfigError`.

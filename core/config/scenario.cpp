@@ -1,10 +1,12 @@
 #include "core/config/scenario.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/printable.h"
 #include "core/config/distribution.h"
 #include "core/config/effects_config.h"
 #include "core/config/fusion_config.h"
@@ -216,6 +218,37 @@ void check_cued(const Scenario& scenario, const SensorConfig& sensor) {
     fail("persistence needs all exposures; set effects: {persistence: off}");
 }
 
+/// Throws `ConfigError` at `where` if no node of the user's has this name.
+void require_own_node(const Scenario& scenario, const std::string& name, const std::string& where) {
+  std::vector<std::string> names;
+  for (const OwnNode& node : scenario.own_nodes) names.push_back(node.name);
+  if (std::ranges::find(names, name) != names.end()) return;
+  throw ConfigError(where + ": no node of `nodes` has this name" + did_you_mean(name, names) +
+                    ", got " + printable(name));
+}
+
+/// Gives each object that a node moves or turns its place among those of the node.
+void assign_own_nodes(Scenario& scenario) {
+  std::map<std::string, std::size_t> counts;
+  for (OwnObject& object : scenario.own_objects) {
+    auto* model = std::get_if<MotionModel>(&object.motion.model);
+    auto* motion = model ? std::get_if<NodeMotion>(model) : nullptr;
+    auto* attitude = object.attitude ? std::get_if<NodeAttitude>(&object.attitude->model) : nullptr;
+    if (motion) {
+      require_own_node(scenario, motion->node, object.motion.node_where);
+      motion->place = counts[motion->node]++;
+    }
+    if (!attitude) continue;
+    require_own_node(scenario, attitude->node, object.attitude->node_where);
+    const bool both = motion && motion->node == attitude->node;
+    attitude->place = both ? motion->place : counts[attitude->node]++;
+  }
+  for (const OwnNode& node : scenario.own_nodes)
+    if (!counts.contains(node.name))
+      throw ConfigError(node.where + ": moves and turns no object (motion: {node: " + node.name +
+                        "})");
+}
+
 }  // namespace
 
 const Section& scenario_section() {
@@ -224,6 +257,8 @@ const Section& scenario_section() {
       "A scenario: when, what is in space, who watches it, and what is written.",
       {required("simulation", form::map(simulation_section), "The run."),
        optional("objects", objects_forms(), "Catalogues of objects, and objects of one's own."),
+       optional("nodes", own_nodes_forms(),
+                "Programs of one's own that take part in the run: they move objects."),
        optional("stars", form::map(stars_section), "The stars; without it there are none."),
        required("sensors", form::list(form::map(sensor_section), 1), "The sensors, at least one."),
        optional("accuracy", accuracy_forms(), "How accurate frames must be, for all sensors.",
@@ -265,7 +300,7 @@ Scenario read_scenario(const YamlValue& root) {
   if (const auto value = map.find("accuracy")) accuracy = read_accuracy(*value);
   const bool detect = map.flag_or("detection", true);
   const auto sensors = map.require("sensors");
-  SensorNames names;
+  NodeNames names;
   for (const auto& value : sensors.list()) {
     if (value.is_map())
       if (const auto name = YamlMap(value).find("name"))
@@ -273,6 +308,14 @@ Scenario read_scenario(const YamlValue& root) {
     scenario.sensors.push_back(
         read_sensor(value, effects, accuracy, detect, scenario.duration, scenario.earth));
   }
+  if (const auto nodes = map.find("nodes")) {
+    for (const auto& value : nodes->list())
+      if (value.is_map())
+        if (const auto name = YamlMap(value).find("name"))
+          if (const auto fault = names.fault_of(name->text())) name->fail(*fault);
+    scenario.own_nodes = read_own_nodes(*nodes);
+  }
+  assign_own_nodes(scenario);
   for (auto& sensor : scenario.sensors) {
     sensor.synthetic_stars_to_v_mag = scenario.synthetic_stars_to_v_mag;
     for (const auto& line : sensor.camera.warnings)

@@ -10,6 +10,7 @@
 #include "core/base/sim_time.h"
 #include "core/config/earth_config.h"
 #include "core/config/object_config.h"
+#include "core/config/own_node_config.h"
 #include "core/config/sky_config.h"
 #include "core/detector/detector.h"
 #include "core/effects/accuracy.h"
@@ -204,6 +205,7 @@ struct Scenario {
   EarthConfig earth;
   std::vector<ObjectSource> objects;   // catalogues
   std::vector<OwnObject> own_objects;  // defined by the scenario
+  std::vector<OwnNode> own_nodes;      // programs of the user's
   std::string star_catalogue_path;     // empty: no stars
   std::string star_catalogue_named;
   std::string star_catalogue_where;  // `file:line:column: stars.catalogue`, for messages

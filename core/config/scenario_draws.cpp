@@ -7,6 +7,7 @@
 #include "core/base/text_file.h"
 #include "core/config/schema.h"
 #include "core/config/yaml_limits.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -51,6 +52,7 @@ bool takes_number(std::string_view path, const Forms& forms) {
 
 /// Checks the form of every distribution, also of those in choices that are not taken.
 void check_forms(const YamlValue& value) {
+  Distribution::refuse_misspelt(value);
   if (Distribution::is(value.node())) {
     for (const auto& choice : Distribution(value).choices()) check_forms(choice);
   } else if (value.is_map()) {

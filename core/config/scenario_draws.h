@@ -10,6 +10,8 @@
 
 namespace dmise {
 
+class YamlValue;
+
 /// A value that was drawn for one seed.
 struct DrawnValue {
   // "sensors[0].exposure_s"; with ".one_of" for the number of a choice, from 0; of a choice within

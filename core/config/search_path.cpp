@@ -48,15 +48,23 @@ std::vector<std::string> preset_names(const std::string& kind) {
   return names;
 }
 
+const char* object_catalogue_file(const std::string& name) {
+  return name == default_object_catalogue || name == "gpredict" ? "demo.tle" : nullptr;
+}
+
 std::string find_catalogue(const std::string& file_name) {
   std::error_code ignored;
   for (const auto& directory :
-       {fs::path(home_directory()) / "build/data", fs::path(home_directory()) / "data",
-        fs::path(data_directory()), fs::path("/usr/share/kstars"),
-        fs::path("/usr/share/gpredict/data/satdata")})
+       {fs::path(home_directory()) / "launch/catalogues", fs::path(home_directory()) / "build/data",
+        fs::path(data_directory())})
     if (fs::is_regular_file(directory / file_name, ignored))
       return (directory / file_name).string();
   return "";
+}
+
+std::string missing_catalogue(const std::string& file_name) {
+  return home_directory() + "/launch/catalogues/" + file_name +
+         " is missing; DMISE_HOME must be the directory that launch/ is in";
 }
 
 }  // namespace dmise

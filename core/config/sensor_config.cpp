@@ -15,6 +15,7 @@
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/psf_plan.h"
 #include "core/optics/psf_table.h"
@@ -200,7 +201,11 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   const auto site = map.find("site");
   const auto platform = map.find("platform");
   if (bool(site) == bool(platform))
-    value.fail("needs either site (on the ground) or platform (an object of the catalogue)", false);
+    value.fail(
+        site ? "has site and platform: give either site (on the ground) or platform (an object "
+               "of the catalogue)"
+             : "needs either site (on the ground) or platform (an object of the catalogue)",
+        false);
   if (site) {
     sensor.place = read_site(*site);
   } else {

@@ -1,8 +1,10 @@
 #pragma once
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
 
 namespace dmise {
+
+class YamlValue;
+struct Section;
 
 /// Reads one of `sensors:`; `effects`, `accuracy` and `detect` are the scenario's, `duration` the
 /// run's. Throws `ConfigError`.

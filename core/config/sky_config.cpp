@@ -5,13 +5,14 @@
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
+#include "core/config/yaml_reader.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
 namespace {
 
 Forms brightness() { return form::number(-10.0, 30.0); }
-Forms share() { return form::number(0.0, 1.0); }
+Forms sky_share() { return form::number(0.0, 1.0); }
 Forms sky_names() { return form::choice({"urban", "suburban", "dark", "space"}); }
 
 const Section& parts_section() {
@@ -31,9 +32,9 @@ const Section& parts_section() {
 const Section& lamps_section() {
   static const Section section{"lamps",
                                "Shares of lamps in the light pollution; one must be above 0.",
-                               {optional("lps", share(), "Low-pressure sodium.", "0"),
-                                optional("hps", share(), "High-pressure sodium.", "0"),
-                                optional("led", share(), "White LED.", "0")}};
+                               {optional("lps", sky_share(), "Low-pressure sodium.", "0"),
+                                optional("hps", sky_share(), "High-pressure sodium.", "0"),
+                                optional("led", sky_share(), "White LED.", "0")}};
   return section;
 }
 

@@ -3,9 +3,13 @@
 #include <string>
 
 #include "core/config/air_config.h"
+#include "core/config/section.h"
 #include "core/sky/sky_model.h"
 
 namespace dmise {
+
+class YamlMap;
+class YamlValue;
 
 /// `sky:` of a sensor or site: the name of a preset, a number for a uniform sky [V mag/arcsec2], or
 /// a mapping.

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/config/yaml_syntax.h"
 
 namespace dmise {
 namespace {
@@ -116,7 +117,7 @@ void check_yaml_limits(const std::string& text, const std::string& file, const Y
     while (parser.HandleNextDocument(counter)) {
     }
   } catch (const YAML::Exception& e) {
-    refuse(file, e.mark, "not valid YAML: " + printable(e.msg));
+    throw ConfigError(syntax_complaint(text, file, e));
   }
 }
 

@@ -77,7 +77,7 @@ YamlValue YamlValue::parse(const std::string& text, const std::string& file) {
     refuse_repeated_keys(node, file, {});
     return {node, std::make_shared<const std::string>(file), ""};
   } catch (const YAML::Exception& e) {
-    throw ConfigError(place_of(file, e.mark) + ": not valid YAML: " + printable(e.msg));
+    throw ConfigError(syntax_complaint(text, file, e));
   }
 }
 
@@ -182,7 +182,7 @@ bool YamlValue::flag() const {
     if (s == "on" || s == "true" || s == "yes") return true;
     if (s == "off" || s == "false" || s == "no") return false;
   }
-  fail("must be on or off");
+  fail("must be on or off" + did_you_mean(is_scalar() ? text() : "", {"on", "off"}));
 }
 
 std::string YamlValue::choice() const {
@@ -195,7 +195,8 @@ std::string YamlValue::choice(std::span<const std::string_view> choices) const {
   form(Form::Kind::choice);
   const std::vector<std::string> names(choices.begin(), choices.end());
   const std::string word = is_scalar() ? node_.Scalar() : "";
-  if (std::ranges::find(names, word) == names.end()) fail("must be one of " + joined(names));
+  if (std::ranges::find(names, word) == names.end())
+    fail("must be one of " + joined(names) + did_you_mean(word, names));
   return word;
 }
 

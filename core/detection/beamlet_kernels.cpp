@@ -21,9 +21,7 @@ DMISE_INLINE bool any_at_least(I16 v, I16 least) {
   return _mm256_movemask_epi8((__m256i)(v >= least)) != 0;
 }
 #else
-DMISE_INLINE bool any_at_least(I16 v, I16 least) {
-  return _mm_movemask_epi8((__m128i)(v >= least)) != 0;
-}
+DMISE_INLINE bool any_at_least(I16 v, I16 least) { return any((I32)(v >= least)); }
 #endif
 
 /// Adds what is large enough of rows of sums that begin at `columns`.

@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// A sum that is large enough: its column, and in which of the joined rows it is.
@@ -42,9 +44,7 @@ inline constexpr std::size_t beamlet_spare = 64;
   void join_four(std::int16_t* const rows[4], std::size_t shift, std::size_t begin,              \
                  std::size_t end, const BeamletLeast& least, BeamletHits& hits);                 \
   }
-DMISE_BEAMLET_KERNELS(sse2)
-DMISE_BEAMLET_KERNELS(avx2)
-DMISE_BEAMLET_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_BEAMLET_KERNELS)
 #undef DMISE_BEAMLET_KERNELS
 
 }  // namespace dmise

@@ -26,11 +26,11 @@ bool is_bent(const SkyBend& b) { return b.xx != 0.0f || b.xy != 0.0f || b.yy != 
 
 /// The level of a cell by a parabola through those around it, and their scatter around that. Cells
 /// off by more than three times the scatter have little weight.
-struct Around {
+struct CellsAround {
   float level, scatter;
 };
 
-Around around(const CellMesh& raw, float sigma, int i, int j) {
+CellsAround around(const CellMesh& raw, float sigma, int i, int j) {
   constexpr int reach = 2, rounds = 4;
   constexpr std::size_t terms = 6;
   constexpr double least_scatter = 0.05;  // in a pixel's noise

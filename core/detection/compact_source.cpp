@@ -235,7 +235,8 @@ std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& can
   if (!source) return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
   const double tolerance_px = std::max(detection_limits::least_difference_px, 4 * sigma_length_px);
-  if (moves_like_star(scene, *source, star, tolerance_px) || !beats_stars(scene, *source))
+  if (moves_like_star(scene, *source, star, tolerance_px) || is_wide_body(scene, *source) ||
+      !beats_stars(scene, *source))
     return std::nullopt;
   return source;
 }

@@ -1,6 +1,7 @@
 #include "core/detection/components.h"
 
 #include "core/base/simd_level.h"
+#include "core/detection/detection_limits.h"
 #include "core/detection/filter_kernels.h"
 
 #include <algorithm>
@@ -211,6 +212,10 @@ double kernel_square_sum(double sigma_px) {
   double sum = 0.0;
   for (std::size_t i = 0; i < half.size(); ++i) sum += (i ? 2.0 : 1.0) * half[i] * half[i];
   return sum * sum;
+}
+
+double limiting_point_e(double noise_e, double sigma_px) {
+  return detection_limits::seed_snr * noise_e / std::sqrt(kernel_square_sum(sigma_px));
 }
 
 std::vector<Component> find_components(const CountImage& counts, const Background& background,

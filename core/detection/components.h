@@ -40,4 +40,10 @@ std::vector<Component> parts_of(const Component& component, const FilteredFrame&
 /// noise s has the matched-filter SNR F sqrt(this) / s.
 double kernel_square_sum(double sigma_px);
 
+/// Electrons of a point at the limiting magnitude, with pixels of `noise_e` rms: its peak in the
+/// frame filtered for points is the threshold `detection_limits::seed_snr` of the background's
+/// noise, so half of such points exceed it. `dmise check`, `explain` and reports of frames share
+/// this definition.
+double limiting_point_e(double noise_e, double sigma_px);
+
 }  // namespace dmise

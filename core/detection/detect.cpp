@@ -72,7 +72,7 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
     const Trail& t = source.trail();
     const double margin_px = source.beside ? 1.5 * sigma_px : 3 * sigma_px + 1.5;
     const bool piece = std::ranges::any_of(out, [&](const Source& stronger) {
-      const Around of(stronger.trail(), margin_px);
+      const Around of(stronger.trail(), std::max(margin_px, 3 * stronger.broad_sigma_px + 1.5));
       const auto has = [&](double along_px) {
         const PixelPosition at = t.at(along_px);
         return of.has(at.x_px, at.y_px);
@@ -140,8 +140,7 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   FrameReport r = unmeasured_report(counts, header);
   r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
-  const double least_e =
-      detection_limits::seed_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
+  const double least_e = limiting_point_e(r.noise_e, sigma_px);
   r.limiting_magnitude = r.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
                          extinction_mag(header, centre_of(counts));
   r.psf_fwhm_px = fwhm_before_pixel(sigma_px);
@@ -210,6 +209,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     if (seen.snr() < detection_limits::least_light_snr) continue;
     add_neglected_errors(source, ends ? &*ends : nullptr);
     if (!ends) add_errors_of_hidden_ends(scene, source);
+    if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.excluded = header.excluded.any();

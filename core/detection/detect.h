@@ -7,6 +7,7 @@
 #include "core/detection/stars_seen.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
+#include "core/products/frame_report.h"
 #include "core/products/pixel_mask.h"
 
 namespace dmise {

@@ -10,6 +10,7 @@
 #include "core/photometry/magnitude_system.h"
 #include "core/products/detection_fields.h"
 #include "core/products/field_value.h"
+#include "core/products/frame_report.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -142,6 +143,14 @@ std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& 
   if (d.field_) line.field(key, true);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
                          DMISE_TEXT, DMISE_WHERE)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_VECTOR
+#undef DMISE_PAIR
+#undef DMISE_TEXT
+#undef DMISE_WHERE
   return line.end();
 }
 

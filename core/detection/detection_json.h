@@ -8,6 +8,8 @@
 
 namespace dmise {
 
+struct FrameReport;
+
 /// ISO 8601 text of a simulation time.
 using UtcText = std::function<std::string(SimTime)>;
 

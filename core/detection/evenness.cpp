@@ -18,7 +18,7 @@ struct Evenness {
 Evenness evenness_of(const Scene& scene, const Trail& t) {
   const Line line = line_of(t);
   const double level = t.flux_e / t.length_px;
-  const Extent extent = extent_of(line, t.length_px / 2 - scene.sigma_px);
+  const Extent extent = in_frame(scene, line, extent_of(line, t.length_px / 2 - scene.sigma_px));
   std::vector<Slice> all;
   std::vector<double> expected;
   double noise = 0.0;

@@ -98,7 +98,9 @@ bool is_streak(const Scene& scene, const Source& source) {
   if (source.snr() < 0.85 * least_streak_snr(t.length_px)) return false;
   if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > 2.0) return false;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
-  if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, source)) return false;
+  if (t.length_px < chain_px + 3 * star.length_px &&
+      (is_wide_body(scene, source) || !beats_stars(scene, source)))
+    return false;
   return !moves_like_star(scene, source, star, detection_limits::least_difference_px + 1);
 }
 

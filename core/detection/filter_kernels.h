@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// Of a turn of 2^32, the golden section: any run of pixels has evenly spread values.
@@ -31,9 +33,7 @@ inline constexpr std::size_t filter_block = 32;
   void flatten_steps(std::int8_t* steps, std::size_t count, bool odd, std::uint32_t dither,       \
                      const float middle[2], const float scale[2]);                                \
   }
-DMISE_FILTER_KERNELS(sse2)
-DMISE_FILTER_KERNELS(avx2)
-DMISE_FILTER_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_FILTER_KERNELS)
 #undef DMISE_FILTER_KERNELS
 
 }  // namespace dmise

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/detection/source_fit.h"
+
 namespace dmise {
 namespace {
 
@@ -10,7 +12,7 @@ namespace {
 double gap_px(const Scene& scene, const Trail& t, double side) {
   constexpr double step_px = 0.5;
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  const double most_px = t.length_px + 6 * scene.sigma_px;
+  const double most_px = std::min(t.length_px + 6 * scene.sigma_px, scene.diagonal_px());
   double gap = 0.0;
   // Light of the end itself reaches over a seen pixel or two.
   for (double beyond = 0.0; beyond < most_px; beyond += step_px) {
@@ -32,7 +34,7 @@ HiddenEnds hidden_ends(const Scene& scene, const Trail& trail) {
 }
 
 void add_errors_of_hidden_ends(const Scene& scene, Source& source) {
-  if (!source.streak || !(source.free & trail_length)) return;
+  if (!source.streak || !(source.free & trail_length) || !is_bounded(scene, source.trail())) return;
   const Trail& t = source.trail();
   const HiddenEnds gaps = hidden_ends(scene, t);
   // Of the length, by two uniform errors.

@@ -27,7 +27,7 @@ struct Sample {
 std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sigma_px,
                                   double beyond_px) {
   const Line line = line_of(t);
-  const Extent extent = extent_of(line, t.length_px / 2 + beyond_px);
+  const Extent extent = in_frame(scene, line, extent_of(line, t.length_px / 2 + beyond_px));
   const StarlitSky sky = starlit_sky(scene, t);
   const double noise_e = std::sqrt(double(scene.pixel_around(t.x_px, t.y_px).variance_e2));
   const double sky_e = sky.level * noise_e, scatter2 = sky.scatter * sky.scatter;

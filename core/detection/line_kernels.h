@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// Samples of a frame along a line, one in each row or column k from `from` to `to`, between the
@@ -43,9 +45,7 @@ struct BandSums {
   /* Sums of the lines beside one of which `across_step` is 1. */ \
   void sum_band(const LineSamples& line, const BandSums& band);   \
   }
-DMISE_LINE_KERNELS(sse2)
-DMISE_LINE_KERNELS(avx2)
-DMISE_LINE_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_LINE_KERNELS)
 #undef DMISE_LINE_KERNELS
 
 }  // namespace dmise

@@ -49,7 +49,8 @@ Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px
 std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to,
                           double offset_px) {
   std::vector<Slice> out;
-  for (int k = from; k <= to; ++k) {
+  const Extent seen = in_frame(scene, line, {from, to});
+  for (int k = seen.from; k <= seen.to; ++k) {
     const Slice s = slice_at(scene, line, k, offset_px);
     if (s.variance > 0) out.push_back(s);
   }
@@ -79,7 +80,8 @@ std::optional<Extent> dark_gap(const Scene& scene, const Line& line, const Exten
     int slices = 0, from = 0, to = 0;
   };
   Run run, best;
-  for (int k = extent.from; k <= extent.to; ++k) {
+  const Extent seen = in_frame(scene, line, extent);
+  for (int k = seen.from; k <= seen.to; ++k) {
     const Slice s = slice_at(scene, line, k, offset_px);
     if (!(s.variance > 0)) continue;
     if (run.slices == 0) run.from = k;

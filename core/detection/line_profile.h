@@ -53,9 +53,17 @@ struct Extent {
 };
 
 inline Extent extent_of(const Line& line, double half_length_px) {
+  constexpr double most = 1e8;  // far outside of any frame
   const double centre = line.by_columns() ? line.x : line.y;
   const double half = half_length_px / line.slice_px();
-  return {int(std::lround(centre - half)), int(std::lround(centre + half))};
+  return {int(std::lround(std::clamp(centre - half, -most, most))),
+          int(std::lround(std::clamp(centre + half, -most, most)))};
+}
+
+/// The part of an extent that is in the frame; empty, with `to` before `from`, if none is.
+inline Extent in_frame(const Scene& scene, const Line& line, const Extent& extent) {
+  const int size = line.by_columns() ? scene.counts.columns : scene.counts.rows;
+  return {std::max(extent.from, 0), std::min(extent.to, size - 1)};
 }
 
 /// Electrons per px of length in one slice, by the matched profile across.

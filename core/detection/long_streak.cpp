@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/quantile.h"
+#include "core/detection/broad_streak.h"
 #include "core/detection/detection_limits.h"
 #include "core/detection/evenness.h"
 #include "core/detection/line_profile.h"
@@ -168,7 +169,8 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
     return best;
   };
   const int middle = (extent.from + extent.to) / 2;
-  Extent lit{extent.from - window_px, extent.to + window_px};
+  const int size = line.by_columns() ? scene.counts.columns : scene.counts.rows;
+  Extent lit{std::max(extent.from, 0) - window_px, std::min(extent.to, size) + window_px};
   if (const auto gap = dark_gap(scene, line, {lit.from, middle}, level)) lit.from = gap->to + 1;
   if (const auto gap = dark_gap(scene, line, {middle, lit.to}, level)) lit.to = gap->from - 1;
   return {end(middle, lit.from), end(middle, lit.to)};
@@ -182,8 +184,62 @@ bool is_among_others(const Scene& scene, const Line& line, const Extent& extent,
   return rise_above_neighbours(scene, trail_along(line, extent, level)) < least_rise;
 }
 
+/// Whether a streak is so short that it may be a row of stars.
+bool may_be_chain(const Scene& scene, const Trail& t) {
+  const Trail star = scene.star_trail(t.x_px, t.y_px);
+  return t.length_px < detection_limits::chain_px + 3 * star.length_px;
+}
+
+/// Whether the light across a trail is that of the PSF, as of no hot column or edge, however it
+/// changes along.
+bool has_profile_of_psf(const Scene& scene, const Trail& trail) {
+  constexpr double most_misfit = 0.3;
+  const int reach = int(std::ceil(2.5 * scene.sigma_px)) + 1;
+  const auto pixels = pixels_near(scene, trail, reach);
+  const auto model = light_in(pixels, {&trail, 1}, scene.psf.at({trail.x_px, trail.y_px}));
+  const Line line = line_of(trail);
+  const auto lanes = std::size_t(2 * reach + 1);
+  std::vector<double> seen(lanes, 0.0), told(lanes, 0.0);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Point at{double(pixels[i].x), double(pixels[i].y)};
+    const double along = (at.x - line.x) * line.ux + (at.y - line.y) * line.uy;
+    if (std::abs(along) > trail.length_px / 2) continue;
+    const double r = along / line.half_length_px;
+    const double off = line.off(at) - line.sagitta_px * (1.0 / 3 - r * r);
+    const auto lane = std::lround(off) + reach;
+    if (lane < 0 || lane >= long(lanes)) continue;
+    seen[std::size_t(lane)] += double(pixels[i].signal_e);
+    told[std::size_t(lane)] += model[i];
+  }
+  double both = 0.0, square = 0.0, off = 0.0, all = 0.0;
+  for (std::size_t k = 0; k < lanes; ++k) both += seen[k] * told[k], square += told[k] * told[k];
+  for (std::size_t k = 0; k < lanes; ++k) {
+    off += std::abs(seen[k] - both / square * told[k]);
+    all += std::abs(both / square * told[k]);
+  }
+  return off < most_misfit * all;
+}
+
+/// The final fit of a streak. The light of one that flickers or was put together of many exposures
+/// differs from the model in proportion, so that the brightest fits worst: then the error of the
+/// model is as large.
+std::optional<Source> final_fit(const Scene& scene, const Trail& trail, double model_error) {
+  constexpr double uneven_error = 0.3;
+  const auto fits = [&](const std::optional<Source>& source) {
+    return source &&
+           source->fit.reduced_chi2() <= (may_be_chain(scene, source->trail()) ? 2.0 : 5.0);
+  };
+  auto source = fit_source(scene, trail, true, model_error);
+  if (!fits(source) && model_error < uneven_error && !may_be_chain(scene, trail) &&
+      has_profile_of_psf(scene, trail))
+    source = fit_source(scene, trail, true, uneven_error);
+  if (!fits(source) || source->snr() < detection_limits::least_snr) return std::nullopt;
+  return source;
+}
+
 /// Alternates fitting and growing until the ends are stable.
-std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps) {
+std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps,
+                                double model_error = 0.02) {
   std::optional<Source> source;
   for (int round = 0; round < most_rounds; ++round) {
     const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
@@ -198,7 +254,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
       break;
     const Trail start = trail_along(line, extent, level);
     if (start.length_px < 6 * scene.sigma_px) return std::nullopt;
-    source = fit_source(scene, start, true, 0.02, true);
+    source = fit_source(scene, start, true, model_error, true);
     if (!source || source->trail().length_px < 6 * scene.sigma_px) return std::nullopt;
     const bool columns = line.by_columns();
     line = line_of(source->trail());
@@ -211,14 +267,13 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
     extent = extent_of(line, source->trail().length_px / 2);
   }
   if (!is_continuous(scene, source->trail())) return std::nullopt;
-  source = fit_source(scene, source->trail(), true, 0.02);
-  if (!source || source->snr() < detection_limits::least_snr) return std::nullopt;
+  source = final_fit(scene, source->trail(), model_error);
+  if (!source) return std::nullopt;
   const Trail& t = source->trail();
-  const Trail star = scene.star_trail(t.x_px, t.y_px);
-  const bool may_be_chain = t.length_px < detection_limits::chain_px + 3 * star.length_px;
-  if (source->fit.reduced_chi2() > (may_be_chain ? 2.0 : 5.0) || !is_continuous(scene, t))
+  if (!is_continuous(scene, t)) return std::nullopt;
+  if (may_be_chain(scene, t) && (is_wide_body(scene, *source) || !beats_stars(scene, *source)))
     return std::nullopt;
-  if (may_be_chain && !beats_stars(scene, *source)) return std::nullopt;
+  const Trail star = scene.star_trail(t.x_px, t.y_px);
   if (moves_like_star(scene, *source, star, detection_limits::least_difference_px + 1))
     return std::nullopt;
   return source;
@@ -233,7 +288,8 @@ Trail trail_on(const Scene& scene, const Line& line, const Extent& extent) {
 class AroundAny {
  public:
   AroundAny(const std::vector<Source>& sources, double margin_px) {
-    for (const Source& source : sources) around_.emplace_back(source.trail(), margin_px);
+    for (const Source& source : sources)
+      around_.emplace_back(source.trail(), std::max(margin_px, 3 * source.broad_sigma_px + 1.5));
   }
   bool has(double x_px, double y_px) const {
     return std::ranges::any_of(around_, [&](const Around& one) { return one.has(x_px, y_px); });
@@ -262,6 +318,16 @@ std::vector<Point> free_points(const Scene& scene, const Component& component, d
   return points;
 }
 
+/// The streak on a broad line, if there is one.
+std::vector<Source> broad_streak(const Scene& scene, const BroadLine& broad) {
+  Scene wide = scene;
+  wide.use(PsfField::gaussian(fwhm_before_pixel(broad.sigma_px)));
+  auto source = streak_on(wide, broad.line, broad.extent, true, broad_profile_error);
+  if (!source) return {};
+  source->broad_sigma_px = broad.sigma_px;
+  return {std::move(*source)};
+}
+
 }  // namespace
 
 void find_long_streaks(const Scene& scene, const Component& component, std::vector<Source>& found) {
@@ -284,12 +350,18 @@ void find_long_streaks(const Scene& scene, const Component& component, std::vect
     if (on.size() < 8) break;
     const auto [low, high] = std::minmax_element(on.begin(), on.end());
     if ((*high - *low) * line.slice_px() < least_px) break;
-    auto source = streak_on(scene, line, {int(*low), int(*high)}, true);
-    // What is uneven with others behind it may be one of a row.
-    if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false);
-    std::vector<Source> sources = streaks_beside(
-        scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}));
-    if (sources.empty() && source) sources.push_back(std::move(*source));
+    const auto broad = broad_line(scene, points, *rough);
+    std::vector<Source> sources;
+    if (broad && broad->is_no_pair) sources = broad_streak(scene, *broad);
+    if (sources.empty()) {
+      auto source = streak_on(scene, line, {int(*low), int(*high)}, true);
+      // What is uneven with others behind it may be one of a row.
+      if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false);
+      sources = streaks_beside(
+          scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}));
+      if (sources.empty() && source) sources.push_back(std::move(*source));
+    }
+    if (sources.empty() && broad && !broad->is_no_pair) sources = broad_streak(scene, *broad);
     const AroundAny streaks(sources, skirt_px);
     std::erase_if(points, [&](const Point& p) {
       return std::abs(line.off(p)) < width_px || streaks.has(p.x, p.y);

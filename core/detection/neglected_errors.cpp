@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/base/units.h"
+
 namespace dmise {
 namespace {
 
@@ -92,6 +94,17 @@ void add_steps_at_ends(Source& source, double sigma_px) {
   const double end_px2 = std::min(end_px * end_px * std::exp(-0.5 * snr2_per_px * sigma_px),
                                   t.length_px * t.length_px / 12);
   source.fit.add_cov(2, 2, 2 * end_px2 * std::pow(t.flux_e / length_px, 2));
+}
+
+void add_column_noise(Source& source, double column_noise_e, double sigma_px) {
+  constexpr double most_across_px = 3.0;  // of the columns that its middle passes
+  const Trail& t = source.trail();
+  const double across_px = std::abs(t.length_px * std::cos(t.angle_rad));
+  if (!source.streak || !(column_noise_e > 0) || across_px > most_across_px) return;
+  // Of the profile across, columns count as by the matched filter.
+  const double columns = 2 * sigma_px * std::sqrt(pi);
+  const double share = columns / (columns + across_px);
+  source.fit.add_cov(2, 2, columns * share * std::pow(column_noise_e * t.length_px, 2));
 }
 
 }  // namespace dmise

@@ -25,4 +25,7 @@ void add_neglected_errors(Source& source, const EndErrors* ends);
 /// the SNR of a pixel's length, times exp(-sigma_px SNR^2 / 2) by the blur.
 void add_steps_at_ends(Source& source, double sigma_px);
 
+/// Adds to the variance of a streak along columns what offsets of whole columns make of its light.
+void add_column_noise(Source& source, double column_noise_e, double sigma_px);
+
 }  // namespace dmise

@@ -16,7 +16,7 @@ constexpr std::array edges = {0.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0};  // of z
 constexpr std::size_t zones = edges.size() - 1;
 constexpr double least_coverage = 0.3;  // of a star's zone by pixels that may be used
 constexpr double outlier_sigmas = 4.0;
-constexpr double model_error = 0.15;      // relative, that does not make a pixel an outlier
+constexpr double tolerated_error = 0.15;  // relative, that does not make a pixel an outlier
 constexpr double sky_error = 0.3;         // around a star, in units of its background's prior
 constexpr double most_difference = 0.25;  // from the mixture's light
 // A part of less weight is a dark ring of diffraction, whose curve of growth is no power.
@@ -25,8 +25,8 @@ constexpr double dark_ring = -1.0;
 // far out, and 1.9 to 2.8 at the zones' distances.
 constexpr double power_of_seeing = 2.4;
 constexpr std::array obscurations = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
-constexpr double growth_error = 1e-3;  // of light within a distance
-constexpr double least_gain = 4.0;     // of chi2, by which a shape is likelier
+constexpr double growth_error = 1e-3;      // of light within a distance
+constexpr double least_growth_gain = 4.0;  // of chi2, by which a shape is likelier
 static_assert(zones < most_parameters);
 
 double distance_px(const Trail& t, const FitPixel& p) {
@@ -57,7 +57,7 @@ Excess excess_of(const ShapeStar& star, const Psf& psf, double width_px) {
     if (zone >= zones) continue;
     const double model = light(p.x, p.y, unused);
     const double residual = p.signal_e - model;
-    const double noise2 = p.variance_e2 + std::max(model, 0.0), tolerated = model_error * model;
+    const double noise2 = p.variance_e2 + std::max(model, 0.0), tolerated = tolerated_error * model;
     out.pixels[zone] += 1;
     if (residual * residual > outlier_sigmas * outlier_sigmas * (noise2 + tolerated * tolerated))
       continue;
@@ -121,7 +121,7 @@ Extrapolation by_seeing(const MeasuredGrowth& measured, const Growth& mixture) {
   }
   const Extrapolation by_power = extrapolated(measured, all, &fall);
   const Extrapolation by_mixture = extrapolated(measured, mixture, nullptr);
-  return by_power.chi2 > by_mixture.chi2 + least_gain ? by_mixture : by_power;
+  return by_power.chi2 > by_mixture.chi2 + least_growth_gain ? by_mixture : by_power;
 }
 
 /// By the aperture's obscuration and the scale of diffraction that fit best.

@@ -18,15 +18,15 @@ namespace {
 constexpr std::array<double, Psf::most> ratios = {0.55, 0.75, 1.0, 1.35, 1.8, 2.5, 3.5, 8.0};
 constexpr std::size_t nearest = 2;  // the Gaussian itself
 constexpr std::size_t parts = ratios.size();
-constexpr std::size_t own = 4;             // parameters of a star: flux, x, y, background
-constexpr std::size_t all = own + parts;   // with the weights
-constexpr double weight_prior = 1.0;       // standard deviation of a weight around a Gaussian's
-constexpr double model_error = 0.01;       // relative, of the mixture
-constexpr double neighbour_error = 0.15;   // relative, that does not make a pixel an outlier
-constexpr double outlier_sigmas = 4.0;     // light of a neighbour that was not found
-constexpr double significant_chi2 = 60.0;  // gain of a mixture over a Gaussian
-constexpr double negligible_chi2 = 25.0;   // loss by dropping a part
-constexpr int rounds = 3;                  // of linear least squares
+constexpr std::size_t own = 4;            // parameters of a star: flux, x, y, background
+constexpr std::size_t all = own + parts;  // with the weights
+constexpr double weight_prior = 1.0;      // standard deviation of a weight around a Gaussian's
+constexpr double mixture_error = 0.01;    // relative, of the mixture
+constexpr double neighbour_error = 0.15;  // relative, that does not make a pixel an outlier
+constexpr double mixture_outlier_sigmas = 4.0;  // light of a neighbour that was not found
+constexpr double significant_chi2 = 60.0;       // gain of a mixture over a Gaussian
+constexpr double negligible_chi2 = 25.0;        // loss by dropping a part
+constexpr int rounds = 3;                       // of linear least squares
 static_assert(all <= most_parameters);
 
 using Weights = std::array<double, parts>;
@@ -66,10 +66,10 @@ NormalEquations equations_of(const ShapeStar& star, const PsfField& field, const
     const double residual = p.signal_e - model - star.background_e;
     const double noise2 = p.variance_e2 + std::max(model, 0.0);
     const double tolerated = neighbour_error * model;
-    if (rejects &&
-        residual * residual > outlier_sigmas * outlier_sigmas * (noise2 + tolerated * tolerated))
+    if (rejects && residual * residual > mixture_outlier_sigmas * mixture_outlier_sigmas *
+                                             (noise2 + tolerated * tolerated))
       continue;
-    const double weight = 1 / (noise2 + model_error * model * model_error * model);
+    const double weight = 1 / (noise2 + mixture_error * model * mixture_error * model);
     out.add(weight, gradient, residual);
   }
   const double prior = 1 / (star.background_sigma_e * star.background_sigma_e);

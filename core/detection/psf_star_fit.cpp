@@ -8,8 +8,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t parameters = 5;  // flux, x, y, background, log of the width
-constexpr double model_error = 0.05;   // of a Gaussian
+constexpr std::size_t parameters = 5;    // flux, x, y, background, log of the width
+constexpr double gaussian_error = 0.05;  // of a Gaussian
 constexpr double least_width_px = 0.25, most_width_px = 25.0;
 constexpr int most_steps = 12;
 constexpr double settled = 1e-3;    // convergence: step of the log of the width
@@ -30,7 +30,7 @@ Linearised linearise(const std::vector<FitPixel>& pixels, const StarWidth& at,
     const double model = light(p.x, p.y, by);
     const double by_width = (wider(p.x, p.y, unused) - model) / log_step;
     const std::array<double, parameters> gradient = {by[2], by[0], by[1], 1.0, by_width};
-    const double error = model_error * model;
+    const double error = gaussian_error * model;
     const double weight = 1 / (p.variance_e2 + std::max(model, 0.0) + error * error);
     const double residual = p.signal_e - model - at.background_e;
     out.chi2 += weight * residual * residual;

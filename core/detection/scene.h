@@ -37,6 +37,7 @@ struct Scene {
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }
+  double diagonal_px() const { return std::hypot(counts.columns, counts.rows); }
   bool is_hidden(int x, int y) const {
     return (hidden && hidden->row(y)[x] == 0) || (known && known->lights(x, y));
   }
@@ -95,8 +96,9 @@ struct Source {
   bool streak = false;
   bool saturated = false;
   bool at_edge = false;
-  bool beside = false;       // fitted together with another one beside it
-  double model_error = 0.0;  // relative error of the PSF in comparisons
+  bool beside = false;          // fitted together with another one beside it
+  double model_error = 0.0;     // relative error of the PSF in comparisons
+  double broad_sigma_px = 0.0;  // of a streak that is wider than the PSF; 0: it is not
 
   const Trail& trail() const { return fit.trails[0]; }
   double snr() const { return trail().flux_e / std::sqrt(fit.cov(2, 2)); }

@@ -9,10 +9,12 @@
 namespace dmise {
 namespace {
 
-constexpr double bent_from_px = 15.0;    // shorter streaks are straight
-constexpr double sloped_from_px = 15.0;  // and uniformly bright
-constexpr int most_rounds = 8;           // of fitting and rejecting
-constexpr double settled_px = 0.5;       // convergence of the ends
+constexpr double bent_from_px = 15.0;      // shorter streaks are straight
+constexpr double sloped_from_px = 15.0;    // and uniformly bright
+constexpr int most_rounds = 8;             // of fitting and rejecting
+constexpr double settled_px = 0.5;         // convergence of the ends
+constexpr double uneven_settled_px = 2.0;  // where the model is far from the light
+constexpr double uneven_error = 0.2;
 
 /// Whether a pixel within one pixel of the line is clipped.
 bool is_saturated(const Scene& scene, const Trail& trail) {
@@ -100,6 +102,20 @@ void end_at_edge(TrailFit& fit, const Scene& scene, double side) {
   t.slope *= share;
 }
 
+/// Cuts a trail at the frame's edge; returns whether it left it. Where an end is so far beyond that
+/// no pixel tells its place, its length can't be fitted.
+bool cut_to_frame(const Scene& scene, Trail& t) {
+  bool cut = false;
+  for (const double side : {-1.0, 1.0}) {
+    const double way_px = way_to_edge_px(t, scene, side) - t.length_px / 2, whole_px = t.length_px;
+    if (!(way_px < 0) || !(way_px > -whole_px)) continue;
+    t = changed(t, side < 0 ? TrailChange::first_end : TrailChange::last_end, way_px);
+    t.flux_e *= t.length_px / whole_px;
+    cut = true;
+  }
+  return cut;
+}
+
 /// A start without the ends that lie among pixels without a value.
 Trail measured_part(Trail t, const Scene& scene) {
   if (!scene.unusable) return t;
@@ -174,9 +190,17 @@ double background_sigma_e(const FitPixel& pixel) {
   return 0.1 * std::sqrt(double(pixel.variance_e2));
 }
 
+bool is_bounded(const Scene& scene, const Trail& t) {
+  constexpr double most_diagonals = 2.0;  // of a streak through the frame, with room for its fit
+  const double most_px = most_diagonals * (scene.diagonal_px() + 6 * scene.sigma_px);
+  return std::isfinite(t.x_px + t.y_px + t.flux_e + t.angle_rad + t.slope) &&
+         t.length_px <= most_px && std::abs(t.sagitta_px) <= most_px &&
+         std::abs(t.x_px) + std::abs(t.y_px) <= 2 * most_px;
+}
+
 bool plausible(const Scene& scene, const Trail& t) {
-  return std::isfinite(t.x_px + t.y_px + t.flux_e + t.length_px + t.angle_rad) && t.flux_e > 0 &&
-         t.x_px > -1 && t.y_px > -1 && t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
+  return is_bounded(scene, t) && t.flux_e > 0 && t.x_px > -1 && t.y_px > -1 &&
+         t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
 }
 
 bool has_values_at(const Scene& scene, const Trail& t, double along_px) {
@@ -221,11 +245,12 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   const PixelPosition middle{start.x_px, start.y_px};
   const double sigma_px = scene.psf.sigma_at(middle);
   const double margin_px = 3 * sigma_px + 2.5;
-  const double tolerance = std::max(0.15, 3 * model_error);
+  const double settles_px = model_error > uneven_error ? uneven_settled_px : settled_px;
+  const double tolerance = std::clamp(3 * model_error, 0.15, 0.45);
   std::vector<FitPixel> pixels, before;
   double moved_px = 0.0;
   const int least_rounds = draft ? 2 : 3, last_round = draft ? 2 : most_rounds;
-  for (int round = 0; round < least_rounds || (round < last_round && moved_px > settled_px);
+  for (int round = 0; round < least_rounds || (round < last_round && moved_px > settles_px);
        ++round) {
     if (!plausible(scene, trail)) return std::nullopt;
     // The nearest Gaussian until the place is known.
@@ -244,15 +269,20 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     settings.most_steps = 20;
     // Nothing has changed since the round before.
     const bool same_psf = round + 1 != least_rounds || draft || scene.psf.is_round_gaussian();
-    if (round > 0 && same_psf && source.fit.converged && moved_px <= settled_px &&
+    if (round > 0 && same_psf && source.fit.converged && moved_px <= settles_px &&
         are_same(pixels, before))
       continue;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
+    if (!(source.fit.cov(2, 2) > 0) && cut_to_frame(scene, trail)) {
+      source.free &= ~unsigned(trail_length);
+      source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
+    }
     std::swap(pixels, before);
     hold_ends_at_edge(scene, source);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * sigma_px);
   }
-  if ((!draft && moved_px > settled_px) || !plausible(scene, trail) || !(source.fit.cov(2, 2) > 0))
+  if ((!draft && moved_px > settles_px) || !plausible(scene, trail) ||
+      !is_bounded(scene, source.trail()) || !(source.fit.cov(2, 2) > 0))
     return std::nullopt;
   set_flags(scene, trail, source);
   return source;

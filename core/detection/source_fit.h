@@ -43,7 +43,11 @@ std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
 /// Error of the background's mesh at a pixel, the prior of a constant background of fits.
 double background_sigma_e(const FitPixel& pixel);
 
-/// Whether a trail is finite, of positive flux and centred in the frame.
+/// Whether a trail is finite, and no longer or more bent than a frame can show. Whatever steps
+/// along a fitted trail asks this first: nothing else bounds a fit that has left the frame.
+bool is_bounded(const Scene& scene, const Trail& trail);
+
+/// Whether a trail is bounded, of positive flux and centred in the frame.
 bool plausible(const Scene& scene, const Trail& trail);
 
 /// Fits a source that is not a star, over all pixels near `start` of any component, with a

@@ -110,4 +110,17 @@ bool beats_stars(const Scene& scene, const Source& source) {
   return true;
 }
 
+bool is_wide_body(const Scene& scene, const Source& source) {
+  constexpr double wider = 1.7, least_gain = 10.0;  // of deviance
+  const Trail& t = source.trail();
+  const auto pixels = pixels_near(scene, t, 3 * wider * scene.sigma_px + 2.5);
+  if (pixels.empty()) return false;
+  FitSettings settings{.psf = scene.psf.at({t.x_px, t.y_px}),
+                       .background_sigma_e = background_sigma_e(pixels.front()),
+                       .most_steps = 20};
+  const double narrow = fit_trails(pixels, {t}, {source.free}, settings).deviance;
+  settings.psf = Psf(wider * scene.sigma_px);
+  return narrow - fit_trails(pixels, {t}, {source.free}, settings).deviance > least_gain;
+}
+
 }  // namespace dmise

@@ -27,4 +27,7 @@ bool point_beats_star(const Scene& scene, const Source& source);
 /// row, and than a piece of one star's trail; true also if a catalogue would have these stars.
 bool beats_stars(const Scene& scene, const Source& source);
 
+/// Whether a much wider line explains the light better, as of a galaxy seen from its side.
+bool is_wide_body(const Scene& scene, const Source& source);
+
 }  // namespace dmise

@@ -104,12 +104,23 @@ void subtract_light(const float* light, float hidden, std::size_t count, bool od
   }
 }
 
+/// One bit for each of `bytes`: whether it is negative.
+DMISE_INLINE std::uint32_t signs_of(Steps bytes) {
+#if defined(__x86_64__)
+  return std::uint32_t(_mm_movemask_epi8((__m128i)bytes));
+#else
+  std::uint32_t out = 0;
+  for (std::size_t i = 0; i < star_lanes; ++i) out |= std::uint32_t(bytes[i] < 0) << i;
+  return out;
+#endif
+}
+
 std::uint64_t bits_above(const float* values, std::size_t count, float least) {
   std::uint64_t out = 0;
   for (std::size_t x = 0; x < count; x += star_lanes) {
     const RowMask above = load<Row>(values + x) > least;
     const Steps bytes = __builtin_convertvector(above, Steps);
-    out |= std::uint64_t(std::uint32_t(_mm_movemask_epi8((__m128i)bytes))) << x;
+    out |= std::uint64_t(signs_of(bytes)) << x;
   }
   return count < 64 ? out & ((std::uint64_t(1) << count) - 1) : out;
 }

@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// Rows of a star's image are whole numbers of as many values.
@@ -46,9 +48,7 @@ struct StarSums {
                   std::size_t stride, std::size_t rows, float photons, float model_error,        \
                   StarSums& sums);                                                               \
   }
-DMISE_STAR_KERNELS(sse2)
-DMISE_STAR_KERNELS(avx2)
-DMISE_STAR_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_STAR_KERNELS)
 #undef DMISE_STAR_KERNELS
 
 }  // namespace dmise

@@ -22,7 +22,7 @@ constexpr double least_gain_over_width = 10.0;  // likewise against a wide body
 constexpr double least_share = 0.1;             // of the amplitude of both that the fainter has
 constexpr double least_overlap = 0.5;           // of the shorter's length
 constexpr double most_turn_rad = 0.1;
-constexpr double bent_from_px = 100.0;
+constexpr double beside_bent_from_px = 100.0;
 
 /// Light across a line, per pixel of the frame.
 struct Profile {
@@ -194,7 +194,8 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   fit_settings.model_error = detection_limits::model_error;
   fit_settings.background_sigma_e = background_sigma_e(pixels.front());
   fit_settings.most_steps = 30;
-  const unsigned free = one.length_px > bent_from_px ? trail_line | trail_sagitta : trail_line;
+  const unsigned free =
+      one.length_px > beside_bent_from_px ? trail_line | trail_sagitta : trail_line;
   TrailFit fit;
   for (int round = 0; round < 3; ++round) {
     fit = fit_trails(pixels, two, {free, free}, fit_settings);

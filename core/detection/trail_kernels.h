@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 
+#include "core/base/simd_sets.h"
 #include "core/detection/trail_shape.h"
 
 namespace dmise {
@@ -38,9 +39,7 @@ struct TrailPixels {
                  double model_error, const double* const* gradients, std::size_t n,              \
                  double* variance, TrailSums& to);                                               \
   }
-DMISE_TRAIL_KERNELS(sse2)
-DMISE_TRAIL_KERNELS(avx2)
-DMISE_TRAIL_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_TRAIL_KERNELS)
 #undef DMISE_TRAIL_KERNELS
 
 }  // namespace dmise

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -70,6 +71,8 @@ std::vector<std::size_t> overfull_columns(float well, const ElectronImage& elect
 }
 
 }  // namespace
+
+double Blooming::cost_s(int level, const PlanFacts& f) { return level * 1e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> Blooming::parameters() {
   static constexpr DetectorParameter table[] = {{"blooming", "BLOOMING",

@@ -17,7 +17,7 @@ struct Blooming {
   bool applies(const Detector& detector) const;
   void apply(const ExposureFacts& exposed, const WholeImage& image) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 1e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Returns how many pixels are full afterwards. Sets `flag_full_well` and `flag_bloomed` if `flags`

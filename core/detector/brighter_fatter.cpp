@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -60,6 +61,8 @@ void crossing(const Rows& rows, bool down, int row, int first, int count, double
 }
 
 }  // namespace
+
+double BrighterFatter::cost_s(int level, const PlanFacts& f) { return level * 30e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> BrighterFatter::parameters() {
   static constexpr DetectorParameter table[] = {

@@ -22,7 +22,7 @@ struct BrighterFatter {
   bool applies(const Detector&) const { return brighter_fatter_per_e > 0.0; }
   void apply(const ExposureFacts& exposed, const ElectronImage& electrons, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 30e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

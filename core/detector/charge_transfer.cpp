@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
 
-constexpr std::size_t column_grain = 64, row_grain = 64;
+constexpr std::size_t transfer_columns = 64, transfer_rows = 64;
 
 /// All transfers of a line of pixels in a few steps of a share of them each, in which what traps
 /// release is not trapped again: with N transfers and an inefficiency c, a share of (N c)^2 / (2
@@ -51,6 +52,8 @@ class Transfers {
 
 }  // namespace
 
+double ChargeTransfer::cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.pixels(); }
+
 std::span<const DetectorParameter> ChargeTransfer::parameters() {
   static constexpr DetectorParameter table[] = {
       {"parallel_cti", "CTIPAR", "charge left behind a transfer along columns",
@@ -67,16 +70,16 @@ void ChargeTransfer::apply(const ExposureFacts&, const WholeImage& image) const 
   const auto columns = std::size_t(e.columns), rows = std::size_t(e.rows);
   if (parallel_cti > 0.0) {
     const Transfers transfers(parallel_cti, cti_release_px, e.rows);
-    const std::size_t blocks = (columns + column_grain - 1) / column_grain;
+    const std::size_t blocks = (columns + transfer_columns - 1) / transfer_columns;
     image.threads.for_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t x = begin * column_grain; x < std::min(end * column_grain, columns);
-           x += column_grain)
-        transfers.apply(e.pixels.data() + x, columns, std::min(column_grain, columns - x), 1);
+      for (std::size_t x = begin * transfer_columns; x < std::min(end * transfer_columns, columns);
+           x += transfer_columns)
+        transfers.apply(e.pixels.data() + x, columns, std::min(transfer_columns, columns - x), 1);
     });
   }
   if (serial_cti > 0.0) {
     const Transfers transfers(serial_cti, cti_release_px, e.columns);
-    image.threads.for_ranges(rows, row_grain, [&](std::size_t begin, std::size_t end) {
+    image.threads.for_ranges(rows, transfer_rows, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; y += 8)
         transfers.apply(e.row(int(y)), 1, std::min<std::size_t>(8, end - y), columns);
     });

@@ -21,7 +21,7 @@ struct ChargeTransfer {
   bool applies(const Detector&) const { return parallel_cti > 0.0 || serial_cti > 0.0; }
   void apply(const ExposureFacts& exposed, const WholeImage& image) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

@@ -1,8 +1,15 @@
 #include "core/detector/column_noise.h"
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+ErrorBound ColumnNoise::error(int, const PlanFacts& f) const {
+  return {.noise = f.without_charge(column_noise_e * column_noise_e).noise};
+}
+
+double ColumnNoise::cost_s(int level, const PlanFacts& f) { return level * 0.85e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> ColumnNoise::parameters() {
   static constexpr DetectorParameter table[] = {{"column_noise_e", "COLNOISE",

@@ -20,10 +20,8 @@ struct ColumnNoise {
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
   /// Of a pixel's noise alone, because the offsets are new in each frame.
-  ErrorBound error(int, const PlanFacts& f) const {
-    return {.noise = f.without_charge(column_noise_e * column_noise_e).noise};
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.85e-9 * f.pixels(); }
+  ErrorBound error(int, const PlanFacts& f) const;
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

@@ -8,6 +8,7 @@
 #include "core/base/units.h"
 #include "core/detector/detector.h"
 #include "core/detector/poisson.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -22,6 +23,8 @@ void add_crossings(double from, double extent, std::vector<double>& cuts) {
 }
 
 }  // namespace
+
+double CosmicRays::cost_s(int level, const PlanFacts& f) { return level * 0.005e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> CosmicRays::parameters() {
   static constexpr DetectorParameter table[] = {

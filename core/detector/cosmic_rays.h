@@ -38,7 +38,7 @@ struct CosmicRays {
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& charges, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.005e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

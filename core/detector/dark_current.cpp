@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -11,6 +12,8 @@ constexpr double absolute_zero_c = -273.15, hottest_c = 100.0;
 constexpr double most_e_per_s = 1e9;
 
 }  // namespace
+
+ErrorBound DarkCurrent::error(int, const PlanFacts& f) { return f.without_charge(f.dark_e); }
 
 double DarkCurrent::thermal_factor() const {
   return dark_doubling_k > 0.0 ? std::exp2((temperature_c - dark_reference_c) / dark_doubling_k)

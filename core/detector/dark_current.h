@@ -24,7 +24,7 @@ struct DarkCurrent {
   void apply(const ExposureFacts& exposed, const Prepared& deviates, Piece& piece) const;
 
   /// Its time is in that of the photons' noise.
-  static ErrorBound error(int, const PlanFacts& f) { return f.without_charge(f.dark_e); }
+  static ErrorBound error(int, const PlanFacts& f);
 
   /// Factor of the dark current from the reference to the detector's temperature.
   double thermal_factor() const;

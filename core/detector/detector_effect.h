@@ -11,7 +11,8 @@
 #include "core/base/rng.h"
 #include "core/base/simd_level.h"
 #include "core/detector/pixel_flags.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/accuracy.h"
+#include "core/effects/effects.h"
 
 // A detector effect maps expected electrons or electrons to electrons or counts. It is a struct of
 // its parameters with

@@ -32,9 +32,7 @@ namespace dmise {
   std::size_t digitise(const float* e, std::size_t count, float dn_per_e, float bias_dn,           \
                        float highest_dn, std::uint16_t* counts);                                   \
   }
-DMISE_DETECTOR_KERNELS(sse2)
-DMISE_DETECTOR_KERNELS(avx2)
-DMISE_DETECTOR_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_DETECTOR_KERNELS)
 #undef DMISE_DETECTOR_KERNELS
 
 }  // namespace dmise

@@ -6,6 +6,7 @@
 
 #include "core/detector/detector.h"
 #include "core/detector/poisson.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -36,6 +37,8 @@ double gamma_deviate(const RngKey& key, std::uint32_t pixel, double shape) {
 }
 
 }  // namespace
+
+double EmGain::cost_s(int level, const PlanFacts& f) { return level * 90e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> EmGain::parameters() {
   static constexpr DetectorParameter table[] = {

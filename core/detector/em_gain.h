@@ -30,7 +30,7 @@ struct EmGain {
   bool applies(const Detector&) const { return em_gain > 1.0 || clock_induced_e > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 90e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 
   /// Returns the variance behind the register, in electrons before it, over that of shot noise: 1
   /// to 2.

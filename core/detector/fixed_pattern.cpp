@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -26,6 +27,8 @@ void add_normals(const RngKey& key, Draw draw, std::size_t first, double scale,
 }
 
 }  // namespace
+
+double FixedPattern::cost_s(int level, const PlanFacts& f) { return level * 9e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> FixedPattern::parameters() {
   static constexpr DetectorParameter table[] = {

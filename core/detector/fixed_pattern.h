@@ -28,7 +28,7 @@ struct FixedPattern {
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& columns, Piece& piece) const;
   ErrorBound error(int, const PlanFacts& f) const;
-  static double cost_s(int level, const PlanFacts& f) { return level * 9e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

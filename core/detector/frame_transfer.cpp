@@ -1,6 +1,7 @@
 #include "core/detector/frame_transfer.h"
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -8,6 +9,8 @@ namespace {
 constexpr std::size_t rows_a_sum = 16;
 
 }  // namespace
+
+double FrameTransfer::cost_s(int level, const PlanFacts& f) { return level * 1.5e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> FrameTransfer::parameters() {
   static constexpr DetectorParameter table[] = {{"frame_transfer_s", "FTRANSF",

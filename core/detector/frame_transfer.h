@@ -24,7 +24,7 @@ struct FrameTransfer {
   Prepared prepare(const ExposureFacts& exposed) const { return sums_of(exposed.light); }
   void apply(const ExposureFacts& exposed, const Prepared& sums, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 1.5e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
   /// Returns a whole image with its smear.
   ExpectedElectronImage smeared(const ExpectedElectronImage& light, const Exposure& exposure) const;
 

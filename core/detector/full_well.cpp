@@ -2,8 +2,15 @@
 
 #include "core/detector/detector.h"
 #include "core/detector/detector_kernels.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+ErrorBound FullWell::error(int, const PlanFacts& f) const {
+  return f.brightest_pixel_e() < full_well_e ? ErrorBound{} : not_bounded;
+}
+
+double FullWell::cost_s(int level, const PlanFacts& f) { return level * 0.1e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> FullWell::parameters() {
   static constexpr DetectorParameter table[] = {

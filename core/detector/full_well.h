@@ -16,10 +16,8 @@ struct FullWell {
   void switch_off() { well_is_limited = false; }
   bool applies(const Detector& detector) const;
   void apply(const ExposureFacts& exposed, Piece& piece) const;
-  ErrorBound error(int, const PlanFacts& f) const {
-    return f.brightest_pixel_e() < full_well_e ? ErrorBound{} : not_bounded;
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.1e-9 * f.pixels(); }
+  ErrorBound error(int, const PlanFacts& f) const;
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

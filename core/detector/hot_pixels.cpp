@@ -5,8 +5,11 @@
 
 #include "core/detector/detector.h"
 #include "core/detector/poisson.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+double HotPixels::cost_s(int level, const PlanFacts& f) { return level * 0.55e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> HotPixels::parameters() {
   static constexpr DetectorParameter table[] = {

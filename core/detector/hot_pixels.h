@@ -34,7 +34,7 @@ struct HotPixels {
   }
   void apply(const ExposureFacts& exposed, const Prepared& hot, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.55e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

@@ -3,8 +3,13 @@
 #include <algorithm>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+double InterpixelCoupling::cost_s(int level, const PlanFacts& f) {
+  return level * 1.3e-9 * f.pixels();
+}
 
 std::span<const DetectorParameter> InterpixelCoupling::parameters() {
   static constexpr DetectorParameter table[] = {

@@ -17,7 +17,7 @@ struct InterpixelCoupling {
   bool applies(const Detector&) const { return interpixel_coupling > 0.0; }
   void apply(const ExposureFacts& exposed, const ElectronImage& electrons, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 1.3e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Signal of the pixels from `first` on: e + coupling x the sum of (neighbour - e).

@@ -1,8 +1,11 @@
 #include "core/detector/nonlinearity.h"
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+double Nonlinearity::cost_s(int level, const PlanFacts& f) { return level * 0.5e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> Nonlinearity::parameters() {
   static constexpr DetectorParameter table[] = {{"nonlinearity", "NONLIN",

@@ -15,7 +15,7 @@ struct Nonlinearity {
   bool applies(const Detector&) const { return nonlinearity > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.5e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 }  // namespace dmise

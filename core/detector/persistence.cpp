@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/detector/detector.h"
 #include "core/detector/poisson.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -31,6 +32,8 @@ void begin_frame(PersistenceMemory& memory, std::uint32_t frame, std::uint32_t w
 }
 
 }  // namespace
+
+double Persistence::cost_s(int level, const PlanFacts& f) { return level * 6.6e-9 * f.pixels(); }
 
 std::uint32_t persistence_window(double persistence_s, double cadence_s) {
   const double frames = -std::log(persistence_forgotten) * persistence_s / cadence_s;

@@ -53,7 +53,7 @@ struct Persistence {
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& release, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 6.6e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Number of frames of a window at a cadence > 0 [s]: after it `persistence_forgotten` is left.

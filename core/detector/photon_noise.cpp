@@ -5,6 +5,7 @@
 
 #include "core/detector/detector_kernels.h"
 #include "core/detector/poisson.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 

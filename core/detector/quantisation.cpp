@@ -4,8 +4,11 @@
 
 #include "core/detector/detector.h"
 #include "core/detector/detector_kernels.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+double Quantisation::cost_s(int, const PlanFacts& f) { return 0.35e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> Quantisation::parameters() {
   static constexpr DetectorParameter table[] = {

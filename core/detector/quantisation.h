@@ -18,7 +18,7 @@ struct Quantisation {
   void switch_off() { *this = {}; }
   bool applies(const Detector&) const { return true; }  // a frame always has counts
   void apply(const ExposureFacts& exposed, Piece& piece) const;
-  static double cost_s(int, const PlanFacts& f) { return 0.35e-9 * f.pixels(); }
+  static double cost_s(int, const PlanFacts& f);
 };
 
 }  // namespace dmise

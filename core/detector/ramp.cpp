@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -25,6 +26,8 @@ double weigh(const RngKey& key, std::uint32_t pixel, int count,
 }
 
 }  // namespace
+
+double Ramp::cost_s(int level, const PlanFacts& f) { return level * 15e-9 * f.pixels(); }
 
 std::span<const DetectorParameter> Ramp::parameters() {
   static constexpr DetectorParameter table[] = {

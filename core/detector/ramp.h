@@ -35,7 +35,7 @@ struct Ramp {
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& fit, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 15e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 
   /// Returns the read noise of the signal, from that of one read.
   double fitted_noise_e(double read_noise_e) const;

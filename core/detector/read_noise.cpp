@@ -6,8 +6,13 @@
 
 #include "core/detector/detector.h"
 #include "core/detector/detector_kernels.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+ErrorBound ReadNoise::error(int, const PlanFacts& f) {
+  return {.noise = f.without_charge(f.read_noise_e * f.read_noise_e).noise};
+}
 
 std::span<const DetectorParameter> ReadNoise::parameters() {
   static constexpr DetectorParameter table[] = {

@@ -23,9 +23,7 @@ struct ReadNoise {
   /// Rms of `count` pixels from `first` on.
   void rms_of_pixels(const RngKey& fixed_key, std::size_t first, std::span<float> rms_e) const;
   /// Its time is in that of the photons' noise.
-  static ErrorBound error(int, const PlanFacts& f) {
-    return {.noise = f.without_charge(f.read_noise_e * f.read_noise_e).noise};
-  }
+  static ErrorBound error(int, const PlanFacts& f);
 };
 
 }  // namespace dmise

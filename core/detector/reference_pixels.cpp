@@ -1,8 +1,13 @@
 #include "core/detector/reference_pixels.h"
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+double ReferencePixels::cost_s(int level, const PlanFacts& f) {
+  return level * 0.05e-9 * f.pixels();
+}
 
 std::span<const DetectorParameter> ReferencePixels::parameters() {
   static constexpr DetectorParameter table[] = {{"reference_px", "REFPIX",

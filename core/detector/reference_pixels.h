@@ -18,7 +18,7 @@ struct ReferencePixels {
   bool applies(const Detector&) const { return reference_px > 0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.05e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Calls visit(begin, end) for the ranges of `count` pixels from `first` on, relative to `first`,

@@ -3,8 +3,13 @@
 #include <algorithm>
 
 #include "core/detector/detector.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+double RollingShutter::cost_s(int level, const PlanFacts& f) {
+  return level * (0.3e-6 * f.stars + 60e-6 * double(f.objects));
+}
 
 std::span<const DetectorParameter> RollingShutter::parameters() {
   static constexpr DetectorParameter table[] = {{"row_time_us", "ROWTIME",

@@ -18,9 +18,7 @@ struct RollingShutter {
   void switch_off() { row_time_us = 0.0; }
   bool applies(const Detector&) const { return row_time_us > 0.0; }
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) {
-    return level * (0.3e-6 * f.stars + 60e-6 * double(f.objects));
-  }
+  static double cost_s(int level, const PlanFacts& f);
   /// How much later than the first the row at `y_px` is exposed [s]; beyond the frame as its last.
   double row_delay_s(double y_px, int rows) const;
   double last_row_delay_s(int rows) const { return 1e-6 * row_time_us * (rows - 1); }

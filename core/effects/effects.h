@@ -8,6 +8,9 @@
 
 namespace dmise {
 
+struct ErrorBound;  // core/effects/accuracy.h
+struct PlanFacts;   // core/effects/plan_facts.h
+
 inline constexpr std::array<std::string_view, 2> off_and_on{"off", "on"};
 
 /// The description of an effect, for scenarios, `dmise check`, run.json and documents.

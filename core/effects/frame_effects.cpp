@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/effects/plan_facts.h"
+
 namespace dmise {
 namespace {
 
@@ -54,7 +56,117 @@ double speckles_in_noise(int level, const PlanFacts& f, double source_e, double 
   return std::min(f.in_noise(light_e), half_noise * left);
 }
 
+/// Error on uncut patches of 32 px [e-]: relative 0.7 times the size of a patch in radians for
+/// the zodiacal table, which bends at its nodes, and 1.5 times its square for the other parts.
+/// These steepen towards the horizon as the airmass and twilight towards the Sun: there the error
+/// is of the third power of a patch over the way to them. Moonlight has a kink 9 deg from the Moon
+/// and rises towards it; clouds have edges.
+double of_patches(const SkySample& s, const PlanFacts& f) {
+  // The Earth's edge, and the air over it, are narrower than patches.
+  const bool sees_edge = f.sees_horizon && !f.scene.on_ground;
+  if (sees_edge || std::isfinite(f.cloud_detail_px)) return s.sky_e;
+  constexpr double beyond_kink_rad = 0.2, third_order = 0.05, nearest_sun_rad = 1.0 * deg;
+  const double patch_rad = 32.0 * std::max(f.pixel_rad, f.widest_pixel_rad);
+  const double zodiacal_e = s.of(SkyPart::zodiacal_light);
+  const auto steep = [&](double way_rad) {
+    return std::min(1.0, third_order * std::pow(patch_rad / way_rad, 3));
+  };
+  double missed_e = 0.7 * patch_rad * zodiacal_e +
+                    1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e) +
+                    steep(std::max(nearest_sun_rad, f.nearest_sun_rad)) * s.of(SkyPart::twilight);
+  // Twilight falls by 1 / (360 k) mag a degree from the zenith, where it has the tip of a cone.
+  constexpr double tip = 0.3, mag_per_rad = 0.16;
+  if (f.sees_zenith)
+    missed_e += tip * patch_rad * mag_per_rad / std::max(f.zenith_extinction_mag, 0.05) *
+                s.of(SkyPart::twilight);
+  if (f.scene.on_ground) missed_e += steep(1.0 / f.most_airmass) * s.sky_e;
+  if (f.nearest_moon_rad < beyond_kink_rad) {
+    const double rises = patch_rad / f.nearest_moon_rad;
+    missed_e += std::min(1.0, 1.3 * patch_rad + rises * rises) * f.moonlight_e(s);
+  }
+  return missed_e;
+}
+
+/// Bound of the error that cutting leaves [e-]. Cutting does not find pieces of cloud that are
+/// smaller than a patch.
+double of_cut(int level, const SkySample& s, const PlanFacts& f) {
+  constexpr double smallest_px = 64.0;
+  const double share =
+      f.cloud_detail_px < smallest_px ? 1.0 : 1.2 * SkyGrid::tolerance[std::size_t(level)];
+  const double brightest_e =
+      PlanFacts::usual_between * (s.sky_e - s.of(SkyPart::scattered_moonlight) + f.moonlight_e(s));
+  return share * std::min(brightest_e, (1.0 + share) * f.saturated_e);
+}
+
 }  // namespace
+
+ErrorBound SkyBackground::error(int, const PlanFacts& f) {
+  return f.without_light([](const SkySample& s) { return 1.1 * s.sky_e; });
+}
+
+double SkyBackground::cost_s(int level, const PlanFacts& f) { return level * 0.9e-9 * f.pixels(); }
+
+ErrorBound SpaceObjects::error(int, const PlanFacts& f) {
+  return f.objects > 0 ? not_bounded : ErrorBound{};
+}
+
+double SpaceObjects::cost_s(int level, const PlanFacts& f) {
+  return level * (20e-6 * double(f.objects - f.shapes) + 1e-3 * double(f.shapes));
+}
+
+ErrorBound ResolvedShapes::error(int level, const PlanFacts& f) {
+  double largest_px = 0.0;  // of those that are points
+  for (const double radius_px : f.shape_radius_px)
+    if (radius_px <= tolerance_px[std::size_t(level)]) largest_px = std::max(largest_px, radius_px);
+  return f.shifted_objects(largest_px * f.pixel_rad);
+}
+
+double ResolvedShapes::cost_s(int level, const PlanFacts& f) {
+  constexpr double shape_s = 38e-3;
+  return shape_s * double(std::ranges::count_if(f.shape_radius_px, [&](double radius_px) {
+           return radius_px > tolerance_px[std::size_t(level)];
+         }));
+}
+
+double StarBackground::cost_s(int level, const PlanFacts& f) {
+  constexpr double search_s = 20e-6, star_s = 1.4e-6;
+  if (level == 0) return 0.0;
+  return search_s +
+         star_s * (level == facts.reference() ? f.stars : f.stars_to(limit_v_mag(level)));
+}
+
+double SyntheticBackground::cost_s(int level, const PlanFacts& f) {
+  constexpr double star_s = 0.7e-6;
+  const double limit = limit_v_mag(level);
+  return level == 0 ? 0.0 : star_s * f.synthetic_brighter[PlanFacts::limit(limit)];
+}
+
+ErrorBound SkyGrid::error(int level, const PlanFacts& f) {
+  return f.without_light(
+      [&](const SkySample& s) { return std::min(of_cut(level, s, f), of_patches(s, f)); });
+}
+
+double SkyGrid::cost_s(int level, const PlanFacts& f) {
+  constexpr std::array<double, 4> looks_more{0.0, 0.05, 4.0, 20.0};
+  if (level == facts.reference()) return f.sky_look_s * f.pixels();
+  const bool is_cut = std::any_of(f.sky.begin(), f.sky.end(), [&](const SkySample& s) {
+    return of_patches(s, f) > of_cut(level, s, f);
+  });
+  return is_cut ? looks_more[std::size_t(level)] * f.sky_look_s * f.sky_looks() : 0.0;
+}
+
+int PsfWavelengths::wavelengths(int level, const PlanFacts& f) {
+  return std::max(count[std::size_t(level)], f.least_wavelengths);
+}
+
+double PsfWavelengths::cost_s(int level, const PlanFacts& f) {
+  const int wavelengths = PsfWavelengths::wavelengths(level, f);
+  return f.kernel_s * (f.kernels_change ? wavelengths - 1.0 : 0.01 * wavelengths);
+}
+
+ErrorBound Occlusion::error(int, const PlanFacts& f) {
+  return f.shapes > 0 ? not_bounded : ErrorBound{};
+}
 
 ErrorBound PsfWavelengths::error(int level, const PlanFacts& f) {
   const int n = wavelengths(level, f);

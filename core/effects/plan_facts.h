@@ -2,28 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <string_view>
 #include <vector>
 
 #include "core/base/units.h"
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
+#include "core/effects/sky_part.h"
 
 namespace dmise {
-
-/// Parts of the sky, in the order in which they are listed.
-enum class SkyPart {
-  uniform,
-  airglow,
-  zodiacal_light,
-  faint_starlight,
-  scattered_moonlight,
-  twilight,
-  light_pollution,
-  count
-};
-inline constexpr std::size_t sky_part_count = static_cast<std::size_t>(SkyPart::count);
 
 /// A sample of the sky by which an exposure is planned: light and noise of a pixel there [e-].
 struct SkySample {
@@ -37,6 +23,18 @@ struct SkySample {
 /// Limits of stars by whole V magnitudes from 0.
 inline constexpr std::size_t star_limits = 32;
 
+/// Turbulence before the sensor, at the centre of its band.
+struct AirFacts {
+  double airy_px = 1.0;             // wavelength / aperture
+  double apertures_per_r0 = 1.0;    // aperture / r0
+  double apertures_blown = 0.0;     // way of the wind in the exposure / aperture
+  int screens = 0;                  // of short exposures; 0: exposures are long
+  double still_peak_share = 1.0;    // as `peak_share`, without turbulence
+  bool still_is_deposited = false;  // without turbulence the blur takes no transform
+  bool can_be_off = true;           // the blur can be computed without it
+  double bleeds_at_e = unbounded;   // charge of a pixel, of a detector that blooms
+};
+
 /// What is known of a sensor and one exposure before it is made. Effects state their errors and
 /// costs by it. All figures are finite.
 struct PlanFacts {
@@ -44,6 +42,7 @@ struct PlanFacts {
   // The sensor.
   int columns = 1, rows = 1;
   double pixel_rad = 1e-5;          // the finest scale of the field
+  double widest_pixel_rad = 0.0;    // the coarsest one
   double relative_bandwidth = 0.2;  // width over centre
   double fwhm_px = 1.0;
   double peak_share = 1.0;  // largest share of a point's light in its brightest pixel
@@ -68,6 +67,7 @@ struct PlanFacts {
   /// Light of a pixel beyond which it is saturated, whatever the plan.
   double saturated_e = unbounded;
   double nearest_moon_rad = 3.0;       // to the nearest of the field
+  bool sees_zenith = false;            // or is near it
   double cloud_detail_px = unbounded;  // size of the smallest pieces of cloud in the field
   double sky_look_s = 0.32e-6;         // cost of evaluating all parts once
   double dark_e = 0.0, read_noise_e = 0.0;
@@ -118,18 +118,7 @@ struct PlanFacts {
   bool faint_objects = false;             // an object may be too faint to count as a source
   double longest_trail_px = 0.0;          // of any source, within the frame
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
-  /// Turbulence before the sensor, at the centre of its band.
-  struct Air {
-    double airy_px = 1.0;             // wavelength / aperture
-    double apertures_per_r0 = 1.0;    // aperture / r0
-    double apertures_blown = 0.0;     // way of the wind in the exposure / aperture
-    int screens = 0;                  // of short exposures; 0: exposures are long
-    double still_peak_share = 1.0;    // as `peak_share`, without turbulence
-    bool still_is_deposited = false;  // without turbulence the blur takes no transform
-    bool can_be_off = true;           // the blur can be computed without it
-    double bleeds_at_e = unbounded;   // charge of a pixel, of a detector that blooms
-  };
-  Air air;
+  AirFacts air;
   // The blur.
   static constexpr double transform_pixel_s = 2e-9;
   int least_wavelengths = 1;    // of the band, by the camera
@@ -309,13 +298,6 @@ struct PlanFacts {
             .background_sigma = background_sigma,
             .noise = noise_of(background_sigma)};
   }
-};
-
-/// An effect of one sensor as the planner sees it.
-struct PlannableEffect {
-  const EffectFacts* facts = nullptr;
-  std::function<ErrorBound(int level, const PlanFacts&)> error{};  // none: it runs as it is asked
-  std::function<double(int level, const PlanFacts&)> cost_s{};     // none: it costs nothing
 };
 
 }  // namespace dmise

@@ -20,7 +20,7 @@ class Table {
   void begin_row() { rows_.emplace_back(); }
   void put(const std::string& column, std::string cell) {
     const auto place = place_.emplace(column, columns_.size());
-    if (place.second) columns_.push_back(column);
+    if (place.second) columns_.push_back(formula_free(column));
     auto& row = rows_.back();
     if (row.size() <= place.first->second) row.resize(place.first->second + 1);
     row[place.first->second] = std::move(cell);
@@ -60,7 +60,7 @@ void put(const std::string& key, const Json& value, Table& table) {
     for (std::size_t i = 0; i < value.size(); ++i)
       put(key + suffix(key, value.size(), i), value[i], table);
   } else if (value.is_string()) {
-    table.put(key, value.get<std::string>());
+    table.put(key, formula_free(value.get<std::string>()));
   } else if (value.is_number_float()) {
     table.put(key, JsonWriter().value(value.get<double>()).take());
   } else {

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// Arrays of a FacetSet, `count` a multiple of 8. `area_m2` may be the unobstructed area only.
@@ -21,9 +23,7 @@ struct FacetDirections {
   /* Sum of area x f x cos in x cos out, without Phong's lobes [m2/sr]. */ \
   double facet_sum(const FacetArrays& facets, const FacetDirections& at);  \
   }
-DMISE_FACET_KERNELS(sse2)
-DMISE_FACET_KERNELS(avx2)
-DMISE_FACET_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_FACET_KERNELS)
 #undef DMISE_FACET_KERNELS
 
 }  // namespace dmise

@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t most_per_exposure = 16;  // the brightest
 constexpr std::size_t most_fits = 2;           // of one tick, each some 30 ms
 constexpr int most_skipped = 3;                // exposures in a row in which it was not found
-constexpr double shortest_gap_s = 1.0;
+constexpr double shortest_arc_gap_s = 1.0;
 constexpr double fastest_rad_per_s = 0.035;  // 2 deg/s: 8 km/s at 230 km
-constexpr double sigmas = 5.0;
+constexpr double arc_sigmas = 5.0;
 /// Largest attraction over the speed across the line of sight, and range rate over range [1/s].
 constexpr double gravity_over_speed = 9.8 / 3000.0, range_rate_over_range = 0.005;
 /// No orbit is tried if more chance arcs as long and as smooth are expected to end in a source.
@@ -47,7 +47,7 @@ Continued continued(const std::vector<const LooseSource*>& arc, SimTime time) {
   const double dt = (seen(a).time - time).seconds();  // > 0, beyond a
   const double ab = (seen(b).time - seen(a).time).seconds();
   const double rate = angle_rad(ua, ub) / ab;
-  const double noise = sigmas * std::max(sigma_rad(seen(a)), sigma_rad(seen(b)));
+  const double noise = arc_sigmas * std::max(sigma_rad(seen(a)), sigma_rad(seen(b)));
   Continued out;
   if (n == 2) {
     const Vec<Gcrs> tangent = unit(ua - ub * dot(ua, ub));  // at b, towards a
@@ -74,7 +74,7 @@ Continued continued(const std::vector<const LooseSource*>& arc, SimTime time) {
 }
 
 /// Chi-square that a fit of `degrees` of freedom exceeds in 1 of 1,000.
-double largest_chi2(int degrees) { return chi_square_of_normal(3.09, std::max(1, degrees)); }
+double largest_arc_chi2(int degrees) { return chi_square_of_normal(3.09, std::max(1, degrees)); }
 
 double range_sigma(const OrbitEstimate& estimate, const Vec<Gcrs>& sensor_m) {
   const Vec<Gcrs> line = estimate.state.position_m - sensor_m;
@@ -98,7 +98,8 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
                                              const std::vector<LooseSource>& earlier) const {
   std::vector<std::uint32_t> exposures;  // frames before the last, the newest first
   for (auto s = earlier.rbegin(); s != earlier.rend(); ++s)
-    if (s->frame < last.frame && (seen(last).time - seen(*s).time).seconds() >= shortest_gap_s &&
+    if (s->frame < last.frame &&
+        (seen(last).time - seen(*s).time).seconds() >= shortest_arc_gap_s &&
         (exposures.empty() || exposures.back() != s->frame))
       exposures.push_back(s->frame);
   const auto at = [&](std::uint32_t frame) -> std::span<const LooseSource> {
@@ -152,7 +153,7 @@ std::optional<StartedOrbit> ArcStart::orbit_of(const std::vector<LooseSource>& a
   auto fits = one_arc_orbits(forces_, lines, {}, limits);
   if (!fits) return std::nullopt;
   BatchFit& best = fits->front();
-  if (best.chi2 > largest_chi2(best.degrees_of_freedom) || !is_sane(best.estimate) ||
+  if (best.chi2 > largest_arc_chi2(best.degrees_of_freedom) || !is_sane(best.estimate) ||
       range_sigma(best.estimate, lines.front().sensor_m) > largest_range_sigma)
     return std::nullopt;
   for (const BatchFit& other : *fits)

@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-constexpr double sigmas = 5.0;              // of the coarse search
+constexpr double coarse_sigmas = 5.0;       // of the coarse search
 constexpr double largest_radius_rad = 0.2;  // tracks that are known worse are not looked for
 constexpr double least_radius_rad = 1e-4;
 constexpr double earth_m = 6.35e6;
@@ -40,7 +40,7 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
   const double cos_field = std::cos(std::min(pi, frame.half_angle_rad + largest_radius_rad));
   const auto take = [&](Candidate& candidate, double sigma_rad) {
     candidate.sigma_rad = sigma_rad;
-    candidate.radius_rad = sigmas * (sigma_rad + seen_sigma) + least_radius_rad;
+    candidate.radius_rad = coarse_sigmas * (sigma_rad + seen_sigma) + least_radius_rad;
     if (candidate.radius_rad > largest_radius_rad) return false;
     if (!behind_earth(frame.sensor_m, candidate.direction, candidate.range_m))
       out.push_back(candidate);

@@ -1,6 +1,5 @@
 #include "core/fusion/cued_sensor.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -19,9 +18,12 @@ std::uint32_t CuedSensor::first_frame_from(SimTime t) const {
 }
 
 double probability_in_circle(const Eigen::Matrix2d& covariance, double radius) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
-  const double shorter = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
-  const double longer = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  // The eigenvalues are variances along the axes of the ellipse.
+  const double mean = 0.5 * (covariance(0, 0) + covariance(1, 1)),
+               difference = 0.5 * (covariance(0, 0) - covariance(1, 1)),
+               apart = std::hypot(difference, covariance(1, 0));
+  const double shorter = std::sqrt(std::max(0.0, mean - apart));
+  const double longer = std::sqrt(std::max(0.0, mean + apart));
   if (!(longer > 1e-9 * radius)) return 1.0;
   constexpr int steps = 256;  // Simpson's rule over the angle of the chord: smooth at the edge
   constexpr double root2 = 1.4142135623730951;

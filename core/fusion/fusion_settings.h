@@ -21,6 +21,8 @@ struct FusionSettings {
   double arc_window_s = 240.0;   // likewise of an arc that one site alone sees
   int arc_exposures = 4;         // least of such an arc, >= 4; 0: one site begins nothing
   double acceleration_noise_m2_per_s3 = 1e-6;
+  // Error of a frame's directions that no detection knows [arcsec]: jitter, bias, drift.
+  double pointing_sigma_arcsec = 0.0;
   Ellipsoid ellipsoid{};       // the Earth, which casts the shadow
   int confirm_catalogued = 3;  // detections that confirm a track of a catalogued object
   int confirm_unknown = 6;     // and one of another, which begins with four

@@ -48,7 +48,7 @@ double SensorFrame::detection_probability(double magnitude, double best) const {
 double SensorFrame::solid_angle_sr() const { return 2 * pi * (1 - std::cos(half_angle_rad)); }
 
 SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>& detections,
-                         int columns, int rows, double half_angle_rad) {
+                         int columns, int rows, double half_angle_rad, double pointing_sigma_rad) {
   SensorFrame out{
       .sensor = report.sensor,
       .frame = report.frame,
@@ -63,6 +63,8 @@ SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>
       .searched = !report.detection_off};
   for (const Detection& d : detections)
     if (auto observation = angle_observation(d)) {
+      observation->covariance_rad2[0] += pointing_sigma_rad * pointing_sigma_rad;
+      observation->covariance_rad2[2] += pointing_sigma_rad * pointing_sigma_rad;
       widen(observation->covariance_rad2);
       out.sources.push_back(
           {std::move(*observation), d.magnitude - report.magnitudes.solar_colour_mag, d.star_like});

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/frame_report.h"
 #include "core/tracking/angle_observation.h"
 
 namespace dmise {
@@ -40,8 +41,10 @@ struct SensorFrame {
 };
 
 /// A frame with its detections. Those whose numbers are not usable are left out. `half_angle_rad`:
-/// of a cone about the boresight that contains the field.
+/// of a cone about the boresight that contains the field. `pointing_sigma_rad`: error of its
+/// directions, on each axis, that the detections' covariances lack.
 SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>& detections,
-                         int columns, int rows, double half_angle_rad);
+                         int columns, int rows, double half_angle_rad,
+                         double pointing_sigma_rad = 0.0);
 
 }  // namespace dmise

@@ -15,7 +15,7 @@ constexpr double least_baseline_m = 10e3;
 constexpr double shortest_gap_s = 1.0;      // between two places of one orbit
 constexpr double least_perigee_m = 6.45e6;  // 70 km above the ground
 constexpr double largest_apogee_m = 1e8;
-constexpr double sigmas = 4.0;           // of coarse tests
+constexpr double start_sigmas = 4.0;     // of coarse tests
 constexpr double longest_miss_m = 50e3;  // of two lines
 constexpr double largest_chi2 = 13.8;    // of an orbit of 2 degrees of freedom: 1e-3
 
@@ -37,7 +37,7 @@ bool may_meet(const AngleObservation& a, const AngleObservation& b) {
   if (norm(at_a) < least_perigee_m || norm(at_a) > largest_apogee_m) return false;
   const double moved_m = 8e3 * std::fabs((a.time - b.time).seconds());
   const double sigma_m = std::hypot(range_a * sigma_rad(a), range_b * sigma_rad(b));
-  return norm(at_a - at_b) < std::min(longest_miss_m, sigmas * sigma_m + moved_m);
+  return norm(at_a - at_b) < std::min(longest_miss_m, start_sigmas * sigma_m + moved_m);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ bool TrackStart::may_be_one(const Place& from, const Place& to) const {
   if (dt_s < shortest_gap_s || dt_s > settings_.start_window_s) return false;
   // Places of the same two sites are wrong in nearly the same direction.
   const Vec<Gcrs> r = to.where.position_m;
-  const double sigma = sigmas * std::hypot(from.sigma_m, to.sigma_m) / dt_s;
+  const double sigma = start_sigmas * std::hypot(from.sigma_m, to.sigma_m) / dt_s;
   const double distance = norm(r), escape = std::sqrt(2 * earth_gm_m3_per_s2 / distance);
   const Vec<Gcrs> mean = (r - from.where.position_m) / dt_s;
   const double speed = norm(mean);

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/fits_guard.h"
-#include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_memory.h"
@@ -163,7 +162,8 @@ std::string encode_frame(const CountImage& counts, const FrameHeader& header,
 Frame decode_frame(std::string_view bytes, const std::string& name) {
   if (bytes.size() < fits_block_bytes || !bytes.starts_with("SIMPLE  ="))
     throw ConfigError(name + ": SIMPLE: not a FITS file");
-  require_harmless_headers(bytes, name);
+  const HarmlessFits harmless(bytes, name);
+  bytes = harmless.bytes();
   Fits fits;
   void* memory = const_cast<char*>(bytes.data());  // opened read-only
   std::size_t memory_size = bytes.size();
@@ -178,6 +178,7 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
   add_cards(fits, values);
   if (fits.status != 0) throw ConfigError(name + ": header can't be read: " + fits.reason());
   Frame frame;
+  frame.notes.assumed = harmless.notes();
   frame.header = header_from_values(values, name);
   require_unsigned_counts(values, name);
   frame.counts = CountImage(int(shape[0]), int(shape[1]));
@@ -216,6 +217,6 @@ void write_frame(const std::string& path, const CountImage& counts, const FrameH
   file.finish();
 }
 
-Frame read_frame(const std::string& path) { return decode_frame(read_text_file(path), path); }
+Frame read_frame(const std::string& path) { return decode_frame(read_fits_file(path), path); }
 
 }  // namespace dmise

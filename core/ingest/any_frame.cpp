@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/fits_guard.h"
+#include "core/base/formatted.h"
 #include "core/base/text_file.h"
+#include "core/detection/psf.h"
 #include "core/image/fits_block.h"
+#include "core/ingest/colour_mosaic.h"
 #include "core/ingest/count_map.h"
 #include "core/ingest/detector_cards.h"
+#include "core/ingest/detector_defects.h"
 #include "core/ingest/fits_image.h"
 #include "core/ingest/frame_facts.h"
 #include "core/ingest/star_trails.h"
@@ -79,6 +86,25 @@ std::vector<double> values_of(FitsImage& image, int first, int together, const S
   return values;
 }
 
+/// The mosaic of a colour camera whose colours are still in one plane; null if it is none.
+std::unique_ptr<ColourMosaic> mosaic_of(const StandardCards& cards, const FitsImage& image,
+                                        std::span<const double> values, int together,
+                                        Threads& threads) {
+  if (together > 1 || image.columns() < 2 || image.rows() < 2) return nullptr;
+  const auto pattern = cards.first_text({"BAYERPAT", "BAYERPTN", "COLORTYP"});
+  if (!pattern || pattern->value == "MONO") return nullptr;
+  auto mosaic = std::make_unique<ColourMosaic>(values, image.columns(), threads);
+  if (const auto& r = mosaic->responses())
+    cards.assumed(pattern->key +
+                  formatted(": the colours of the mosaic are evened: responses %.2f %.2f %.2f %.2f",
+                            (*r)[0], (*r)[1], (*r)[2], (*r)[3]));
+  else
+    cards.assumed(pattern->key +
+                  ": the colours of the mosaic have the same sky now; too few bright "
+                  "pixels show their responses");
+  return mosaic;
+}
+
 /// A stated value must be one, and a keyword that nothing reads is noted.
 void check_stated(const StandardCards& of_planes, const StandardCards& cards,
                   const FrameChoice& choice, const std::string& name) {
@@ -94,13 +120,21 @@ Frame foreign_frame(FitsImage& image, const FitsValues& values, const StandardCa
                     const std::string& name, Threads& threads) {
   Frame frame;
   const StandardCards cards(values, frame.notes);
-  const auto pixels = values_of(image, place.plane, together, cards, name);
-  const CountMap map = choose_count_map(pixels, image.columns());
-  frame.counts = to_counts(pixels, image.columns(), map, frame.unusable);
+  for (const std::string& note : image.mended()) cards.assumed(note);
+  auto pixels = values_of(image, place.plane, together, cards, name);
+  leave_out_overscan(cards, image.columns(), image.rows(), pixels);
+  const auto mosaic = mosaic_of(cards, image, pixels, together, threads);
+  std::vector<double> evened;
+  if (mosaic) evened = mosaic->evened();
+  auto& used = mosaic ? evened : pixels;
+  leave_out_bright_edges(cards, image.columns(), image.rows(), used);
+  const CountMap map = choose_count_map(used, image.columns());
+  frame.counts = to_counts(used, image.columns(), map, frame.unusable);
   set_facts(cards, place, image.columns(), image.rows(), frame.header);
-  const CountSource source{pixels, map, together};
-  set_detector(cards, source, frame.counts, threads, frame.header);
-  set_star_images(cards, frame.counts, threads, frame.header);
+  set_detector(cards, {pixels, map, together, mosaic.get()}, frame.counts, threads, frame.header);
+  leave_out_bleeding(frame, threads);
+  if (set_star_images(cards, frame.counts, threads, frame.header))
+    leave_out_hot_pixels(sigma_with_pixel(frame.header.psf_fwhm_px), frame, threads);
   check_stated(of_planes, cards, choice, name);
   return frame;
 }
@@ -126,7 +160,7 @@ void decode_frames(std::string_view bytes, const std::string& name, const FrameC
 
 void read_frames_of(const std::string& path, const FrameChoice& choice, Threads& threads,
                     const TakeFrame& take) {
-  decode_frames(read_text_file(path), path, choice, threads, take);
+  decode_frames(read_fits_file(path), path, choice, threads, take);
 }
 
 Frame read_any_frame(const std::string& path, const FrameChoice& choice, Threads& threads) {

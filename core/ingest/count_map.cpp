@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <optional>
 
 #include "core/base/quantile.h"
@@ -122,9 +124,37 @@ double pixel_noise(std::span<const double> values, int columns) {
   return sigma_of_median / std::sqrt(2.0) * median_of(std::move(differences));
 }
 
+CountMap common_step(std::span<const double> values) {
+  constexpr std::size_t least_numbers = 4;  // that differ, of which a step can be told
+  constexpr double sky_share = 0.5, share_on_step = 0.99;
+  std::vector<std::size_t> pixels(std::size_t(most_count) + 1, 0);
+  std::size_t finite = 0;
+  for (const double v : values)
+    if (std::isfinite(v)) ++finite, ++pixels[std::size_t(v)];
+  std::vector<std::size_t> numbers;
+  for (std::size_t v = 0; v < pixels.size(); ++v)
+    if (pixels[v] > 0) numbers.push_back(v);
+  std::ranges::stable_sort(numbers, std::greater(), [&](std::size_t v) { return pixels[v]; });
+  if (numbers.size() < least_numbers) return {};
+  // Of the most frequent ones: the values of few pixels may be anything.
+  std::size_t step = 0, seen = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i >= least_numbers && double(seen) > sky_share * double(finite)) break;
+    seen += pixels[numbers[i]];
+    step =
+        std::gcd(step, numbers[i] > numbers[0] ? numbers[i] - numbers[0] : numbers[0] - numbers[i]);
+  }
+  if (step <= 1) return {};
+  const std::size_t zero = numbers[0] % step;
+  std::size_t on_step = 0;
+  for (std::size_t v = zero; v < pixels.size(); v += step) on_step += pixels[v];
+  if (double(on_step) < share_on_step * double(finite)) return {};
+  return {double(zero), double(step)};
+}
+
 CountMap choose_count_map(std::span<const double> values, int columns) {
   const Range range = range_of(values);
-  if (range.whole && range.least >= 0 && range.most <= most_count) return {};
+  if (range.whole && range.least >= 0 && range.most <= most_count) return common_step(values);
   const double width = range.most - range.least;
   if (range.whole && width <= most_count) return {range.least, 1.0};
   double step = pixel_noise(values, columns) / 16;

@@ -8,7 +8,7 @@
 namespace dmise {
 
 /// How values of any range are mapped to 16 bits: count = (value - zero) / step, rounded, and
-/// clipped to 0..65535. Whole numbers in 0..65535 stay as they are.
+/// clipped to 0..65535.
 struct CountMap {
   double zero = 0.0, step = 1.0;
 
@@ -21,8 +21,14 @@ struct CountMap {
 /// two pixels can be compared.
 double pixel_noise(std::span<const double> values, int columns);
 
-/// The map of an image. The step is a sixteenth of the pixels' noise at most, or 1 for whole
-/// numbers; where the range is then too wide its bright end is clipped.
+/// The step that nearly all of some whole numbers in 0..65535 share, as where counts of 12 bits
+/// were padded to 16, and the least number on it; a step of 1 if they share none. A few values may
+/// be off it, as where a camera clips at 65535 or has mended pixels.
+CountMap common_step(std::span<const double> values);
+
+/// The map of an image. Whole numbers in 0..65535 keep the step that they share: a noise of less
+/// than a step is then not lost. Others get at most a sixteenth of the pixels' noise, or 1 for
+/// whole numbers; where the range is then too wide its bright end is clipped.
 CountMap choose_count_map(std::span<const double> values, int columns);
 
 /// The greatest value, if so many pixels share it that they must be clipped; else 0 pixels.

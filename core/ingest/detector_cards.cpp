@@ -14,21 +14,6 @@ constexpr double most_gain = 20.0;     // of GAIN [e-/count]; more is a camera's
 constexpr double least_noise_e = 0.1;  // of a camera
 constexpr int mesh_px = 64;
 
-/// A gain by which the sky's noise is one that a camera can have.
-std::optional<double> stated_gain(const StandardCards& cards, double noise) {
-  for (const auto& [key, most] : {std::pair{"EGAIN", 1e9}, {"GAIN", most_gain}}) {
-    const auto gain = cards.number(key);
-    if (!gain) continue;
-    if (!(*gain > 0 && *gain <= most))
-      cards.reject(key, "gain: is not in electrons per count");
-    else if (*gain * noise < least_noise_e)
-      cards.reject(key, "gain: makes the sky's noise less than 0.1 electrons");
-    else
-      return gain;
-  }
-  return std::nullopt;
-}
-
 /// Electrons per count by the noise of the sky: the slope of variance against level over a mesh.
 struct MeasuredGain {
   double e_per_dn = 0.0, sigma = 0.0;
@@ -36,13 +21,14 @@ struct MeasuredGain {
 
 /// Empty where levels span too little: the slope must be known to 10 %. Frames whose pixels were
 /// averaged or resampled have less noise than light, and so too high a gain.
-std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Background& background) {
+std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Background& background,
+                                         int cell_px = mesh_px) {
   struct Cell {
     double level, variance;
   };
   std::vector<Cell> cells;
-  for (int y = mesh_px / 2; y < counts.rows; y += mesh_px)
-    for (int x = mesh_px / 2; x < counts.columns; x += mesh_px) {
+  for (int y = cell_px / 2; y < counts.rows; y += cell_px)
+    for (int x = cell_px / 2; x < counts.columns; x += cell_px) {
       const double sigma = background.sigma_dn(x, y), level = background.level_dn(x, y);
       if (sigma > 0.5) cells.push_back({level, sigma * sigma - 1.0 / 12});
     }
@@ -75,16 +61,71 @@ std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Backgro
   return MeasuredGain{gain, gain * slope_sigma / slope};
 }
 
-void set_gain(const StandardCards& cards, const CountMap& map, const CountImage& counts,
-              const Background& background, FrameHeader& header) {
-  if (const auto gain = stated_gain(cards, background.median_sigma_dn() * map.step)) {
-    header.gain_e_per_dn = *gain * map.step;
+/// Of the pixels of each kind alone, in electrons per count of the evened image.
+std::optional<MeasuredGain> measure_gain_of(const ColourMosaic& mosaic, const CountMap& map,
+                                            Threads& threads) {
+  constexpr int cell_px = mesh_px / 2;
+  double weights = 0.0, sum = 0.0;
+  for (const CountImage& kind : mosaic.kinds()) {
+    const auto one = measure_gain(kind, Background(kind, cell_px, threads), cell_px);
+    if (!one) continue;
+    const double weight = 1 / (one->sigma * one->sigma);
+    weights += weight;
+    sum += weight * one->e_per_dn;
+  }
+  if (!(weights > 0)) return std::nullopt;
+  const double steps = map.step / mosaic.map().step;
+  return MeasuredGain{sum / weights * steps, steps / std::sqrt(weights)};
+}
+
+/// A gain by which the sky's noise is one that a camera can have.
+std::optional<StandardCards::Named<double>> stated_gain(const StandardCards& cards, double noise) {
+  for (const auto& [key, most] : {std::pair{"EGAIN", 1e9}, {"GAIN", most_gain}}) {
+    const auto gain = cards.number(key);
+    if (!gain) continue;
+    if (!(*gain > 0 && *gain <= most))
+      cards.reject(key, "gain: is not in electrons per count");
+    else if (*gain * noise < least_noise_e)
+      cards.reject(key, "gain: makes the sky's noise less than 0.1 electrons");
+    else
+      return StandardCards::Named<double>{key, *gain};
+  }
+  return std::nullopt;
+}
+
+/// Whether a gain is a camera's setting: light of so many electrons a count had less noise. Pixels
+/// that were averaged or resampled have less noise than their light, never more.
+bool is_setting(const StandardCards::Named<double>& stated, const MeasuredGain& measured) {
+  constexpr double least_ratio = 1.5, least_sigmas = 5.0;
+  return stated.key == "GAIN" && stated.value > least_ratio * measured.e_per_dn &&
+         stated.value - measured.e_per_dn > least_sigmas * measured.sigma;
+}
+
+void set_gain(const StandardCards& cards, const CountSource& source, const CountImage& counts,
+              const Background& background, Threads& threads, FrameHeader& header) {
+  const CountMap& map = source.map;
+  const auto measured = [&]() -> std::optional<MeasuredGain> {
+    auto gain = source.mosaic ? measure_gain_of(*source.mosaic, map, threads)
+                              : measure_gain(counts, background);
+    if (gain) gain->e_per_dn /= map.step, gain->sigma /= map.step;
+    return gain;
+  };
+  const auto stated = stated_gain(cards, background.median_sigma_dn() * map.step);
+  if (stated && stated->key == "EGAIN") {
+    header.gain_e_per_dn = stated->value * map.step;
     return;
   }
-  if (const auto gain = measure_gain(counts, background)) {
-    header.gain_e_per_dn = gain->e_per_dn;
+  const auto gain = measured();
+  if (stated && !(gain && is_setting(*stated, *gain))) {
+    header.gain_e_per_dn = stated->value * map.step;
+    cards.assumed(formatted("gain: GAIN = %.6g is taken for electrons per count", stated->value));
+    return;
+  }
+  if (gain) {
+    if (stated) cards.reject("GAIN", "gain: light of so many electrons a count had less noise");
+    header.gain_e_per_dn = gain->e_per_dn * map.step;
     cards.assumed(formatted("gain: %.4g +- %.2g electrons per count, measured from the sky's noise",
-                            gain->e_per_dn / map.step, gain->sigma / map.step));
+                            gain->e_per_dn, gain->sigma));
     return;
   }
   header.gain_e_per_dn = 1.0;
@@ -124,9 +165,12 @@ void set_saturation(const StandardCards& cards, const CountSource& source, doubl
   constexpr double highest = 65535.0;
   const CountMap& map = source.map;
   header.saturation_dn = highest;
+  const auto count_of = [&](double value) {
+    return map.count(source.mosaic ? source.mosaic->least_evened(value) : value);
+  };
   if (const auto stated = cards.first_number({"SATURATE", "SATLEVEL"})) {
     const double bias = header.bias_dn - map.count(0.0), planes = source.planes;
-    const double limit = map.count(stated->value) + bias * (planes - 1) / planes;
+    const double limit = count_of(stated->value) + bias * (planes - 1) / planes;
     if (limit > sky_dn) {
       header.saturation_dn = std::min(highest, limit);
       return;
@@ -138,7 +182,7 @@ void set_saturation(const StandardCards& cards, const CountSource& source, doubl
     cards.missing("saturation: no SATURATE, and no greatest value that pixels share");
     return;
   }
-  header.saturation_dn = std::min(highest, std::max(1.0, map.count(top.value)));
+  header.saturation_dn = std::min(highest, std::max(1.0, count_of(top.value)));
   cards.assumed(formatted("saturation: %.10g, the greatest value, which %.0f pixels have",
                           top.value, double(top.pixels)));
 }
@@ -149,7 +193,7 @@ void set_detector(const StandardCards& cards, const CountSource& source, const C
                   Threads& threads, FrameHeader& header) {
   const CountMap& map = source.map;
   const Background background(counts, mesh_px, threads);
-  set_gain(cards, map, counts, background, header);
+  set_gain(cards, source, counts, background, threads, header);
   set_bias(cards, map, source.planes, header);
   set_read_noise(cards, background.median_sigma_dn(), source.planes, header);
   set_saturation(cards, source, background.median_level_dn(), header);

@@ -2,6 +2,7 @@
 #include <span>
 
 #include "core/base/parallel.h"
+#include "core/ingest/colour_mosaic.h"
 #include "core/ingest/count_map.h"
 #include "core/ingest/standard_cards.h"
 #include "core/products/frame_header.h"
@@ -10,9 +11,10 @@ namespace dmise {
 
 /// What counts were made of.
 struct CountSource {
-  std::span<const double> values;  // NaN where there is none
+  std::span<const double> values;  // NaN where there is none; of a mosaic as they were recorded
   CountMap map;
-  int planes = 1;  // that were added
+  int planes = 1;                        // that were added
+  const ColourMosaic* mosaic = nullptr;  // if they were evened
 };
 
 /// Sets gain, bias, read noise and saturation of `header` in counts: from EGAIN or GAIN; BIASLVL or

@@ -10,11 +10,14 @@ namespace dmise {
 struct ExposureTimes {
   std::optional<Utc> start;
   std::optional<double> exposure_s;  // > 0
+  // Of the last digit that tells the start; 0: it is known as well as its text says.
+  double width_s = 0.0;
 };
 
-/// EXPTIME, EXPOSURE or XPOSURE; DATE-BEG, -AVG, -END or -OBS with a date and time of day (that
-/// may stand in TIME-OBS or UT instead), or MJD-BEG, -AVG, -END, -OBS, in the time scale TIMESYS
-/// (FITS Standard 4.0, section 9). DATE-OBS and MJD-OBS are taken for the start, which is noted.
+/// EXPTIME, EXPOSURE or XPOSURE; DATE-BEG, -AVG, -OBS or -END with a date and time of day, or
+/// MJD-BEG, -AVG, -OBS, -END, in the time scale TIMESYS (FITS Standard 4.0, section 9). The time of
+/// day may stand in a card of its own (TIME-OBS, UT, TAIHMS, ..) and have an offset to UTC; the
+/// date may be DD/MM/YY. DATE-OBS and MJD-OBS are taken for the start, which is noted.
 ExposureTimes exposure_times(const StandardCards& cards);
 
 /// Time from the start of a cube's first plane to that of another, from 0 [s]: by a third axis

@@ -5,28 +5,31 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/fits_guard.h"
 #include "core/image/fits_block.h"
 #include "core/ingest/tile_guard.h"
 
 namespace dmise {
 namespace {
 
-constexpr int most_axes = 6;  // of a compressed image in CFITSIO
+constexpr int most_axes = 99;  // of CFITSIO
+constexpr int most_compressed_axes = 6;
 constexpr LONGLONG longest_side = 1 << 16, most_planes = 1 << 20;
 // gzip compresses at best 1032 to 1: a file that claims more is malicious.
 constexpr double most_bytes_per_byte = 1040;
 
+std::string_view require_fits(std::string_view bytes, const std::string& name) {
+  if (!bytes.starts_with("SIMPLE  =")) throw ConfigError(name + ": SIMPLE: not a FITS file");
+  return bytes;
+}
+
 }  // namespace
 
 FitsImage::FitsImage(std::string_view bytes, std::string name)
-    : bytes_(bytes),
-      name_(std::move(name)),
-      memory_(const_cast<char*>(bytes.data())),  // opened read-only
-      memory_bytes_(bytes.size()) {
-  if (bytes_.size() < fits_block_bytes || !bytes_.starts_with("SIMPLE  ="))
-    throw ConfigError(name_ + ": SIMPLE: not a FITS file");
-  require_harmless_headers(bytes_, name_);
+    : name_(std::move(name)),
+      harmless_(require_fits(bytes, name_), name_),
+      bytes_(harmless_.bytes()),
+      memory_(const_cast<char*>(bytes_.data())),  // opened read-only
+      memory_bytes_(bytes_.size()) {
   fits_open_memfile(&fits_.file, "frame", READONLY, &memory_, &memory_bytes_, 0, nullptr,
                     &fits_.status);
   if (fits_.status != 0) throw ConfigError(name_ + ": not a FITS file: " + fits_.reason());
@@ -54,8 +57,10 @@ void FitsImage::read_shape() {
   int axes = 0;
   std::array<LONGLONG, most_axes> sides{};
   fits_get_img_dim(fits_.file, &axes, &fits_.status);
-  if (fits_.status == 0 && axes > most_axes)
-    fail("NAXIS: must be at most 6, got " + std::to_string(axes));
+  const bool compressed = fits_is_compressed_image(fits_.file, &fits_.status) != 0;
+  const int most = compressed ? most_compressed_axes : most_axes;
+  if (fits_.status == 0 && axes > most)
+    fail("NAXIS: must be at most " + std::to_string(most) + ", got " + std::to_string(axes));
   fits_get_img_paramll(fits_.file, most_axes, &bitpix_, &axes, sides.data(), &fits_.status);
   if (fits_.status != 0) fail("is not an image: " + fits_.reason());
   std::array<int, 3> shape{1, 1, 1};
@@ -65,9 +70,9 @@ void FitsImage::read_shape() {
     const std::string key = "NAXIS" + std::to_string(i + 1);
     if (side == 1 && i >= 2) continue;
     if (used == 3) fail(key + ": a fourth axis must be 1 long, got " + std::to_string(side));
-    const LONGLONG most = used < 2 ? longest_side : most_planes;
-    if (side < 1 || side > most)
-      fail(key + ": must be in 1.." + std::to_string(most) + ", got " + std::to_string(side));
+    const LONGLONG longest = used < 2 ? longest_side : most_planes;
+    if (side < 1 || side > longest)
+      fail(key + ": must be in 1.." + std::to_string(longest) + ", got " + std::to_string(side));
     shape[used++] = int(side);
   }
   if (axes < 2) fail("NAXIS: must be 2 or more, got " + std::to_string(axes));

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/fits_guard.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_memory.h"
 
@@ -23,6 +24,8 @@ class FitsImage {
   int planes() const { return planes_; }
   /// Cards of the image's header, then those of the primary header that it lacks.
   const FitsValues& values() const { return values_; }
+  /// What was mended in the file to read it.
+  const std::vector<std::string>& mended() const { return harmless_.notes(); }
 
   /// Adds plane `plane` (from 0), scaled by BSCALE and BZERO, to `sum`, rows x columns: NaN where
   /// BLANK or NaN says that there is no value.
@@ -35,9 +38,10 @@ class FitsImage {
   void read_values();
   [[noreturn]] void fail(const std::string& reason) const;
 
-  std::string_view bytes_;
   std::string name_;
-  void* memory_;  // CFITSIO keeps the addresses of these two
+  HarmlessFits harmless_;
+  std::string_view bytes_;  // its
+  void* memory_;            // CFITSIO keeps the addresses of these two
   std::size_t memory_bytes_;
   Fits fits_;
   int hdu_ = 1;

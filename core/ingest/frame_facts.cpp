@@ -1,5 +1,6 @@
 #include "core/ingest/frame_facts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/units.h"
@@ -47,9 +48,12 @@ void set_times(const StandardCards& cards, const PlanePlace& place, FrameHeader&
     header.unknown.add(FrameFact::time);
     return;
   }
-  header.start_utc = format_utc(*times.start, 9);
-  header.middle_utc = format_utc(later(*times.start, header.middle.seconds()), 9);
-  header.end_utc = format_utc(later(*times.start, header.end.seconds()), 9);
+  // Digits that the header does not know are left out.
+  const int decimals =
+      times.width_s > 0 ? std::clamp(int(std::ceil(-std::log10(times.width_s))), 0, 9) : 9;
+  header.start_utc = format_utc(*times.start, decimals);
+  header.middle_utc = format_utc(later(*times.start, header.middle.seconds()), decimals);
+  header.end_utc = format_utc(later(*times.start, header.end.seconds()), decimals);
 }
 
 void set_site(const StandardCards& cards, FrameHeader& header) {
@@ -117,7 +121,7 @@ void set_pointing(const StandardCards& cards, int columns, int rows, FrameHeader
 void set_hint(const StandardCards& cards, FrameHeader& header) {
   for (const auto& [ra_key, dec_key] :
        {std::pair{"RA", "DEC"}, {"OBJCTRA", "OBJCTDEC"}, {"CRVAL1", "CRVAL2"}}) {
-    const bool hours = cards.text(ra_key).find_first_of(" :") != std::string::npos;
+    const bool hours = cards.text(ra_key).find_first_of(" :hH") != std::string::npos;
     const auto ra = cards.angle_deg(ra_key, hours), dec = cards.angle_deg(dec_key, false);
     if (!ra || !dec || !(std::abs(*ra) <= 360 && std::abs(*dec) <= 90)) continue;
     header.observation.ra_rad = *ra * deg;

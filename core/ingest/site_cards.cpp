@@ -51,12 +51,15 @@ std::optional<Site> site_of(const StandardCards& cards) {
   if (const auto site = by_angles(cards, {"OBSGEO-B", "OBSGEO-L", "OBSGEO-H"})) return site;
   for (const Keys& keys :
        {Keys{"SITELAT", "SITELONG", "SITEELEV"}, Keys{"LAT-OBS", "LONG-OBS", "ALT-OBS"},
-        Keys{"OBS-LAT", "OBS-LONG", "OBS-ELEV"}})
+        Keys{"OBS-LAT", "OBS-LONG", "OBS-ELEV"}, Keys{"SITELAT", "SITELON", "SITEELEV"},
+        Keys{"OBSLAT", "OBSLONG", "OBSALT"}, Keys{"OBSLAT", "OBSLON", "OBSALT"},
+        Keys{"LATITUDE", "LONGITUD", "ALTITUDE"}, Keys{"GEOLAT", "GEOLON", "GEOELEV"}})
     if (const auto site = by_angles(cards, keys)) {
       cards.assumed(std::string("site: ") + keys.longitude + " is taken as east positive");
       return site;
     }
-  cards.missing("site: no OBSGEO-X, OBSGEO-B, SITELAT, LAT-OBS or OBS-LAT");
+  cards.missing(
+      "site: no OBSGEO-X, OBSGEO-B, SITELAT, LAT-OBS, OBS-LAT, OBSLAT, LATITUDE or GEOLAT");
   return std::nullopt;
 }
 

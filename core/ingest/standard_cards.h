@@ -35,7 +35,8 @@ class StandardCards {
   std::optional<Named<double>> first_number(std::initializer_list<const char*> keys) const;
   std::optional<Named<std::string>> first_text(std::initializer_list<const char*> keys) const;
 
-  /// Degrees, as a number or as "d m s" with blanks or colons; `hours`: three parts are hours.
+  /// Degrees, as a number or as "d m s" with blanks, colons or signs of units, with N, S, E or W
+  /// after it; a fourth part is hundredths of a second, which is noted. `hours`: parts are hours.
   std::optional<double> angle_deg(const std::string& key, bool hours) const;
 
   void missing(const std::string& text) const { notes_.missing.push_back(text); }

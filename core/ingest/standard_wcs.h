@@ -9,7 +9,8 @@ namespace dmise {
 
 /// The celestial WCS of a header (Calabretta & Greisen 2002, A&A 395, 1077): TAN, ARC, ZEA, STG or
 /// ZPN by a CD matrix, PC and CDELT, or CDELT and CROTA2, with right ascension on either axis, any
-/// LONPOLE, and SIP. RADESYS must be ICRS, FK5 of 2000 or not said. Empty, with a note of the
+/// LONPOLE, and SIP, or TPV without terms in the distance. RADESYS ICRS, FK5 or FK4 of any equinox
+/// (EPOCH is its old name), and galactic coordinates are turned to ICRS. Empty, with a note of the
 /// keyword and the reason, if there is none or it says what this program does not know.
 std::optional<Wcs> wcs_of(const StandardCards& cards);
 

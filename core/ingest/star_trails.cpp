@@ -58,7 +58,8 @@ PixelPosition trail_in_the_middle(const FrameHeader& header, int columns, int ro
   return StarMotion(header, columns, rows).trail_at({(columns - 1) / 2.0, (rows - 1) / 2.0});
 }
 
-void set_width(const StandardCards& cards, const std::optional<StarShape>& shape,
+/// Returns whether the width is known, not taken for the usual one.
+bool set_width(const StandardCards& cards, const std::optional<StarShape>& shape,
                FrameHeader& header) {
   if (const auto stated = cards.number("PSFFWHM");
       stated && *stated >= least_fwhm_px && *stated <= most_fwhm_px) {
@@ -71,7 +72,9 @@ void set_width(const StandardCards& cards, const std::optional<StarShape>& shape
   } else {
     header.psf_fwhm_px = otherwise_fwhm_px;
     cards.assumed("PSF: taken for 2 px wide (FWHM): too few stars to measure it");
+    return false;
   }
+  return true;
 }
 
 /// A median and its standard error.
@@ -176,11 +179,12 @@ std::optional<StarShape> shape_of(const CountImage& counts, const FrameHeader& h
 
 }  // namespace
 
-void set_star_images(const StandardCards& cards, const CountImage& counts, Threads& threads,
+bool set_star_images(const StandardCards& cards, const CountImage& counts, Threads& threads,
                      FrameHeader& header) {
   const auto shape = shape_of(counts, header, threads);
-  set_width(cards, shape, header);
+  const bool knows_width = set_width(cards, shape, header);
   set_attitudes(cards, counts, shape, header);
+  return knows_width;
 }
 
 void set_trails_of_solved(const CountImage& counts, Threads& threads, FrameHeader& solved) {

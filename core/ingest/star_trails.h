@@ -9,8 +9,9 @@ namespace dmise {
 /// attitudes at start and end of the exposure by which stars trail. Those are of a mount at rest
 /// (MOUNT = 'fixed') or turning with the stars ('sidereal') if the header states it; else of a
 /// mount at rest if the stars' measured trails agree with the Earth's turning, of an even drift if
-/// not, and 'sidereal' if stars do not trail. What was chosen is noted.
-void set_star_images(const StandardCards& cards, const CountImage& counts, Threads& threads,
+/// not, and 'sidereal' if stars do not trail. What was chosen is noted. Returns whether the PSF's
+/// width is stated or measured.
+bool set_star_images(const StandardCards& cards, const CountImage& counts, Threads& threads,
                      FrameHeader& header);
 
 /// Sets the attitudes of a solved header in the same way, of a frame whose pointing was not known

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/effects/plan_facts.h"
 #include "core/instrument/instrument.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 
 // Errors of a sensor that it does not know of: frames are made with them, and headers are written
 // without. Such an effect is a struct of its parameters, all 0 by default, with

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/frames/quaternion.h"
 #include "core/instrument/instrument.h"
 

@@ -3,6 +3,7 @@
 
 #include "core/base/rng.h"
 #include "core/base/sim_time.h"
+#include "core/effects/accuracy.h"
 #include "core/instrument/instrument_effect.h"
 
 namespace dmise {

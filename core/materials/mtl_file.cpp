@@ -95,6 +95,7 @@ bool is_height_map(std::string_view key) {
 std::shared_ptr<Texture> texture_of(const LineFields& fields, double& height_m) {
   Texture t{.where = fields.where() + ": " + std::string(fields.keyword())};
   std::size_t i = 1;
+  double none = 0.0;
   const auto numbers = [&](double& u, double& v) {
     u = ranged(fields, ++i, -1e4, 1e4);
     for (double* more : {&v, static_cast<double*>(nullptr)})
@@ -112,15 +113,22 @@ std::shared_ptr<Texture> texture_of(const LineFields& fields, double& height_m) 
       numbers(t.offset_u, t.offset_v);
     else if (option == "-bm" && is_height_map(fields.keyword()))
       height_m = ranged(fields, ++i, -1e3, 1e3);
-    else if (option == "-clamp")
+    else if (option == "-t")  // turbulence, which has no effect here
+      numbers(none, none);
+    else if (option == "-mm") {
+      t.base = ranged(fields, ++i, -1e4, 1e4);
+      t.gain = ranged(fields, ++i, -1e4, 1e4);
+    } else if (option == "-clamp")
       t.clamp = word() == "on";
-    else if (option == "-blendu" || option == "-blendv" || option == "-cc" || option == "-texres")
+    else if (option == "-blendu" || option == "-blendv" || option == "-cc" || option == "-texres" ||
+             option == "-imfchan")
       word();
     else
       fields.fail("option cannot be used", option);
   }
   for (; i < fields.size(); ++i) t.file += (t.file.empty() ? "" : " ") + std::string(fields[i]);
   if (t.file.empty()) fields.fail("needs the name of a picture");
+  std::replace(t.file.begin(), t.file.end(), '\\', '/');
   return std::make_shared<Texture>(std::move(t));
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/materials/line_fields.h"
 #include "core/materials/mesh_repair.h"
@@ -51,7 +53,7 @@ class Reader {
     } else if (key == "usemtl") {
       use(fields_.rest());
     } else if (key == "mtllib") {
-      library();
+      libraries();
     } else if (key == "o" || key == "g") {
       name(key == "o");
     } else if (key == "l" || key == "p") {
@@ -187,7 +189,13 @@ class Reader {
       material = found->second;
     else
       material = sources_.library(name);
-    if (!material) fields_.fail("no such material in a material file or in the library", name);
+    if (!material) {
+      std::vector<std::string> names;
+      for (const auto& [known, of] : defined_) names.push_back(known);
+      fields_.fail(
+          "no such material in a material file or in the library" + did_you_mean(name, names),
+          name);
+    }
     use_material(*material);
     used_[name] = material_;
   }
@@ -213,8 +221,26 @@ class Reader {
     }
   }
 
-  void library() {
-    const std::string name = fields_.rest();
+  /// Names of material files may have blanks: each ends in .mtl, but for the last.
+  void libraries() {
+    std::string name;
+    for (std::size_t i = 1; i < fields_.size(); ++i) {
+      name += (name.empty() ? "" : " ") + std::string(fields_[i]);
+      const std::string ending =
+          upper_case(name.substr(name.size() - std::min<std::size_t>(4, name.size())));
+      if (ending != ".MTL" && i + 1 < fields_.size()) continue;
+      std::replace(name.begin(), name.end(), '\\', '/');
+      library(name);
+      name.clear();
+    }
+    if (fields_.size() < 2) fields_.fail("needs a name");
+  }
+
+  /// A file elsewhere is not a model's, and messages about it would tell what is in it.
+  void library(const std::string& name) {
+    const auto normal = std::filesystem::path(name).lexically_normal();
+    if (normal.is_absolute() || normal.string().starts_with(".."))
+      fields_.fail("must be in the folder of the model", name);
     std::string text;
     try {
       text = sources_.read_mtl(name);

@@ -36,7 +36,8 @@ inline constexpr std::size_t most_facets = 4'000'000;
 /// with `file:line`.
 ObjModel parse_obj(std::string_view text, const std::string& file, const ObjSources& sources);
 
-/// Reads an OBJ file; material files and pictures are relative to its directory.
+/// Reads an OBJ file; material files and pictures are relative to its directory. Material files
+/// must be in it or below it.
 ObjModel load_obj(const std::string& path, const MaterialByName& library, bool names_panel = false);
 
 }  // namespace dmise

@@ -43,6 +43,9 @@ std::array<float, 3> Texture::at(const TexturePlace& place) const {
 }
 
 Texture colour_texture(Texture described, LinearPicture picture) {
+  if (described.base != 0.0 || described.gain != 1.0)
+    for (float& v : picture.pixels)
+      v = std::clamp(float(described.base + described.gain * double(v)), 0.0f, 1.0f);
   for (const float v : picture.pixels)
     if (!(v >= 0.0f && v <= 1.0f))
       throw Error("values must be from 0 to 1, got " + std::to_string(v));
@@ -67,7 +70,7 @@ Texture slope_texture(Texture described, const LinearPicture& picture) {
     float sum = 0.0f;
     for (int c = 0; c < channels; ++c)
       sum += picture.pixels[pixel * std::size_t(channels) + std::size_t(c)];
-    return sum / float(channels);
+    return float(described.gain) * sum / float(channels);
   };
   described.columns = columns;
   described.rows = rows;

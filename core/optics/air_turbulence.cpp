@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/effects/plan_facts.h"
+
 namespace dmise {
 namespace {
 
@@ -11,28 +13,28 @@ constexpr double deviations = 4.0;       // one exposure in 3000 has more
 constexpr double aperture_widths = 3.0;  // of a point spread, in which light is summed
 
 /// lambda / r0: the scale of seeing.
-double seeing_px(const PlanFacts::Air& air) { return air.airy_px * air.apertures_per_r0; }
+double seeing_px(const AirFacts& air) { return air.airy_px * air.apertures_per_r0; }
 
 /// Deviation of the mean of the speckle patterns of an exposure in a pixel, relative to it.
-double speckle_contrast(const PlanFacts::Air& air) {
+double speckle_contrast(const AirFacts& air) {
   const double cells = std::max(1.0, 1.0 / (air.airy_px * air.airy_px));
   return 1.0 / std::sqrt(air.screens * cells);
 }
 
 /// The same of all that is beyond a radius: there is a speckle for each square of wavelength /
 /// aperture.
-double rim_contrast(const PlanFacts::Air& air, double radius_px) {
+double rim_contrast(const AirFacts& air, double radius_px) {
   return std::min(1.0, air.airy_px / radius_px) / std::sqrt(double(air.screens));
 }
 
 /// Share of the light of a circular aperture without air that is farther away.
-double diffracted_beyond(const PlanFacts::Air& air, double radius_px) {
+double diffracted_beyond(const AirFacts& air, double radius_px) {
   return std::min(1.0, 0.2 * air.airy_px / radius_px);
 }
 
 /// Share of a source's light in one pixel at the rim of its aperture: the derivative of
 /// `scattered_beyond`.
-double halo_share(const PlanFacts::Air& air, double radius_px) {
+double halo_share(const AirFacts& air, double radius_px) {
   return 0.031 * std::pow(seeing_px(air), 5.0 / 3.0) * std::pow(radius_px, -11.0 / 3.0);
 }
 
@@ -75,19 +77,19 @@ double beside_sources(int level, const PlanFacts& f, double radius_px) {
 
 }  // namespace
 
-double image_motion_px(const PlanFacts::Air& air) {
+double image_motion_px(const AirFacts& air) {
   if (air.screens == 0) return 0.0;
   const double once = 0.18 * std::pow(air.apertures_per_r0, 5.0 / 3.0) * air.airy_px * air.airy_px;
   const double blown = air.screens > 1 ? std::cbrt(1.0 / (1.0 + 0.25 * air.apertures_blown)) : 1.0;
   return std::sqrt(once * (blown + (1.0 - blown) / air.screens));
 }
 
-double scattered_beyond(const PlanFacts::Air& air, double radius_px) {
+double scattered_beyond(const AirFacts& air, double radius_px) {
   return std::min(1.0, 0.11 * std::pow(radius_px / seeing_px(air), -5.0 / 3.0));
 }
 
 ErrorBound AirTurbulence::error(int level, const PlanFacts& f) {
-  const PlanFacts::Air& air = f.air;
+  const AirFacts& air = f.air;
   if (level == short_exposure || (level == long_exposure && air.screens == 0)) return {};
   if (level == off && !air.can_be_off) return not_bounded;
   const bool any = f.shapes > 0 || f.brightest_e() > 0.0;

@@ -1,9 +1,11 @@
 #pragma once
 #include <array>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 
 namespace dmise {
+
+struct AirFacts;  // core/effects/plan_facts.h
 
 /// How turbulence blurs point sources: as the air of the exposure does, or as it does on average.
 struct AirTurbulence {
@@ -28,11 +30,11 @@ struct AirTurbulence {
 /// 0.18 (D / r0)^(5/3) (lambda / D)^2, averaged over the apertures of air that the wind blows past
 /// and over the screens that are drawn. Sources: Noll 1976, J. Opt. Soc. Am. 66, 207; Martin 1987,
 /// PASP 99, 1360, after whom the variance falls as time^(-1/3).
-double image_motion_px(const PlanFacts::Air& air);
+double image_motion_px(const AirFacts& air);
 
 /// Share of a point's light that turbulence scatters farther than `radius_px`: the integral of
 /// Kolmogorov's spectrum, 0.086 (radius r0 / lambda)^(-5/3), with a margin for 3 seeing widths and
 /// more. Source: Roddier 1981, Progress in Optics 19, 281.
-double scattered_beyond(const PlanFacts::Air& air, double radius_px);
+double scattered_beyond(const AirFacts& air, double radius_px);
 
 }  // namespace dmise

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 inline constexpr int panel_nodes = 5;
@@ -46,9 +48,7 @@ struct BandView {
      leftmost on are in the image. */                                                     \
   void add_short(const ShortArc& arc, const PsfTableView& table, const BandView& band);   \
   }
-DMISE_DEPOSIT_KERNELS(sse2)
-DMISE_DEPOSIT_KERNELS(avx2)
-DMISE_DEPOSIT_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_DEPOSIT_KERNELS)
 #undef DMISE_DEPOSIT_KERNELS
 
 }  // namespace dmise

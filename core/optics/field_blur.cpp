@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/optics/psf_table.h"
 #include "core/optics/pupil_sampling.h"
 
@@ -111,6 +112,16 @@ double misplaced_by_gaussians(const Optics& o, const FieldPlace& place, double w
 }
 
 }  // namespace
+
+ErrorBound FieldBlur::error(int level, const PlanFacts& f) {
+  return f.misplaced(f.field_misplaced[std::size_t(level)], f.field_shift_px[std::size_t(level)]);
+}
+
+double FieldBlur::cost_s(int level, const PlanFacts& f) {
+  const int n = places[std::size_t(level)];
+  const double transforms_s = 0.5 * (n * n - 1) * PlanFacts::transform_pixel_s * f.pixels();
+  return transforms_s + 0.01 * n * n * f.kernel_s;
+}
 
 std::vector<WavefrontTerm> terms_of_field(const Optics& optics, const FieldPlace& place) {
   std::vector<WavefrontTerm> terms;

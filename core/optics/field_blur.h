@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/monotone_cubic.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/optics/field_radius.h"
 
 namespace dmise {
@@ -45,15 +45,9 @@ struct FieldBlur {
       levels,
       2};
   static bool applies(const SceneFacts& scene) { return scene.blur_varies; }
-  static ErrorBound error(int level, const PlanFacts& f) {
-    return f.misplaced(f.field_misplaced[std::size_t(level)], f.field_shift_px[std::size_t(level)]);
-  }
+  static ErrorBound error(int level, const PlanFacts& f);
   /// A forward transform a place, and its kernels, which are kept, a hundredth.
-  static double cost_s(int level, const PlanFacts& f) {
-    const int n = places[std::size_t(level)];
-    const double transforms_s = 0.5 * (n * n - 1) * PlanFacts::transform_pixel_s * f.pixels();
-    return transforms_s + 0.01 * n * n * f.kernel_s;
-  }
+  static double cost_s(int level, const PlanFacts& f);
 
   FieldRadius radius = FieldRadius::angle_deg;
   MonotoneCubic fwhm_radial_px, fwhm_tangential_px;  // of Gaussians, before diffraction

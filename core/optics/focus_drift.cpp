@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -13,6 +14,15 @@ constexpr double hour_s = 3600.0, day_h = 24.0;
 double day_angle_rad(double hours) { return 2 * pi * hours / day_h; }
 
 }  // namespace
+
+ErrorBound FocusDrift::error(int level, const PlanFacts& f) {
+  if (level > 0) return {};
+  // A disc of the blur's own width moves half of the light.
+  const double discs = f.defocus_px / std::hypot(f.fwhm_px, 0.5);
+  return f.misplaced(0.5 * discs * std::max(1.0, discs), 0.0);
+}
+
+double FocusDrift::cost_s(int level, const PlanFacts& f) { return level * f.kernel_s; }
 
 double FocusDrift::at_m(double time_s) const {
   const double hours = time_s / hour_s;

@@ -2,7 +2,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 
 namespace dmise {
 
@@ -14,14 +14,9 @@ struct FocusDrift {
                                      "the focus stays: a disc of defocus / focal ratio is missing",
                                      "Smith 2008, Modern Optical Engineering"};
   static bool applies(const SceneFacts& scene) { return scene.focus_drifts; }
-  static ErrorBound error(int level, const PlanFacts& f) {
-    if (level > 0) return {};
-    // A disc of the blur's own width moves half of the light.
-    const double discs = f.defocus_px / std::hypot(f.fwhm_px, 0.5);
-    return f.misplaced(0.5 * discs * std::max(1.0, discs), 0.0);
-  }
+  static ErrorBound error(int level, const PlanFacts& f);
   /// Kernels of each exposure.
-  static double cost_s(int level, const PlanFacts& f) { return level * f.kernel_s; }
+  static double cost_s(int level, const PlanFacts& f);
 
   double start_um = 0.0;  // along the axis, at the start of the run
   double um_per_hour = 0.0;

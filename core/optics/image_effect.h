@@ -4,7 +4,7 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 
 // Optics that act on the whole image after every source is on it. Such an effect is a struct of its
 // parameters with

@@ -1,7 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/accuracy.h"
+#include "core/effects/effects.h"
 #include "core/optics/field_blur.h"
 #include "core/optics/focus_drift.h"
 
@@ -26,11 +27,7 @@ struct PointSpread {
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   /// Of the plane, once, unless it is the air that makes it necessary; sources have that of their
   /// deposit.
-  static double cost_s(int level, const PlanFacts& f) {
-    const bool transforms = (f.scene.diffracts && !f.air.still_is_deposited) ||
-                            f.scene.blur_varies || f.scene.focus_drifts;
-    return transforms ? level * PlanFacts::transform_pixel_s * f.pixels() : 0.0;
-  }
+  static double cost_s(int level, const PlanFacts& f);
 
   enum class Model {
     gaussian,     // round, of `psf_fwhm_px` and diffraction in quadrature

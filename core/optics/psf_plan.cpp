@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/effects/plan_facts.h"
 #include "core/optics/psf_table.h"
 
 namespace dmise {
@@ -93,6 +94,12 @@ int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* ai
 }
 
 }  // namespace
+
+double PointSpread::cost_s(int level, const PlanFacts& f) {
+  const bool transforms = (f.scene.diffracts && !f.air.still_is_deposited) || f.scene.blur_varies ||
+                          f.scene.focus_drifts;
+  return transforms ? level * PlanFacts::transform_pixel_s * f.pixels() : 0.0;
+}
 
 PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<SensorSeeing>& seeing,
                  double exposure_s, AirTurbulence::Level turbulence) {

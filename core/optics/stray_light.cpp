@@ -4,8 +4,15 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+ErrorBound StrayLight::error(int, const PlanFacts& f) {
+  return f.without_light([&](const SkySample&) { return f.stray_light_e; });
+}
+
+double StrayLight::cost_s(int level, const PlanFacts& f) { return level * 0.5e-9 * f.pixels(); }
 
 double StrayLight::at(double angle_rad) const {
   if (!any()) return 0.0;

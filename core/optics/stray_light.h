@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 
 namespace dmise {
 
@@ -13,10 +13,8 @@ struct StrayLight {
       "no background of it: 1e-6 of the Sun's light is 1e4 times the night sky's",
       "a measured point source transmittance"};
   static bool applies(const SceneFacts& scene) { return scene.stray_light; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_light([&](const SkySample&) { return f.stray_light_e; });
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.5e-9 * f.pixels(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   /// Angles of a source from the boresight [deg], rising, 0..180; and the focal plane's irradiance
   /// over the aperture's there, 0..1. Empty: none.

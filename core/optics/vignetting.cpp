@@ -3,9 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/effects/plan_facts.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
+
+ErrorBound Vignetting::error(int, const PlanFacts& f) {
+  const double lost = 1.0 - f.least_illumination;
+  ErrorBound error = f.without_light([&](const SkySample& s) { return lost * s.sky_e; });
+  error.photometry_mag = -2.5 * std::log10(std::max(f.least_illumination, 1e-9));
+  // It changes along a source: twice as much at the edge as on the way there.
+  double length_px = f.longest_trail_px;
+  for (const double radius_px : f.shape_radius_px) length_px = std::max(length_px, 2.0 * radius_px);
+  const double half_diagonal_px = 0.5 * std::hypot(double(f.columns), double(f.rows));
+  const double change = std::max(lost * std::min(1.0, 2.0 * length_px / half_diagonal_px),
+                                 std::min(1.0, f.illumination_slope_per_px * length_px));
+  error.position_px = 0.25 * change * length_px;
+  // Where a source leaves less than half of the noise.
+  if (f.stars > 0.0 || f.objects > 0)
+    error += f.without_light([&](const SkySample& s) { return 0.5 * lost * s.noise_e; });
+  return error;
+}
+
+double Vignetting::cost_s(int level, const PlanFacts& f) { return level * 10e-9 * f.stars; }
 
 double relative_illumination(const Optics& optics, PixelPosition pixel) {
   const Vignetting& v = optics.vignetting;

@@ -4,7 +4,7 @@
 
 #include "core/base/monotone_cubic.h"
 #include "core/base/pixel.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/optics/field_radius.h"
 
 namespace dmise {
@@ -19,24 +19,8 @@ struct Vignetting {
       "cos theta of the pupil and a power of the distance from the axis, or a measured table"};
   static bool applies(const SceneFacts& scene) { return scene.vignettes; }
 
-  static ErrorBound error(int, const PlanFacts& f) {
-    const double lost = 1.0 - f.least_illumination;
-    ErrorBound error = f.without_light([&](const SkySample& s) { return lost * s.sky_e; });
-    error.photometry_mag = -2.5 * std::log10(std::max(f.least_illumination, 1e-9));
-    // It changes along a source: twice as much at the edge as on the way there.
-    double length_px = f.longest_trail_px;
-    for (const double radius_px : f.shape_radius_px)
-      length_px = std::max(length_px, 2.0 * radius_px);
-    const double half_diagonal_px = 0.5 * std::hypot(double(f.columns), double(f.rows));
-    const double change = std::max(lost * std::min(1.0, 2.0 * length_px / half_diagonal_px),
-                                   std::min(1.0, f.illumination_slope_per_px * length_px));
-    error.position_px = 0.25 * change * length_px;
-    // Where a source leaves less than half of the noise.
-    if (f.stars > 0.0 || f.objects > 0)
-      error += f.without_light([&](const SkySample& s) { return 0.5 * lost * s.noise_e; });
-    return error;
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 10e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   /// The entrance pupil is seen foreshortened: cos theta. With a gnomonic lens, whose pixels' solid
   /// angle goes as cos^3 theta, the sky falls off as cos^4 theta.

@@ -106,6 +106,10 @@ Rotation<Gcrs, Body> attitude_of(const TableAttitude& table, const AttitudeScene
   return rotation_of<Gcrs, Body>(between(table.gcrs_from_body[i], table.gcrs_from_body[i + 1], u));
 }
 
+Rotation<Gcrs, Body> attitude_of(const NodeAttitude& attitude, const AttitudeScene&) {
+  throw Error("attitude: only node " + attitude.node + " knows how its objects are turned");
+}
+
 }  // namespace
 
 Rotation<Gcrs, Body> gcrs_from_body(const Attitude& attitude, const AttitudeScene& scene) {

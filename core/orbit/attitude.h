@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -35,9 +37,15 @@ struct TableAttitude {
   std::vector<Quaternion> gcrs_from_body;
 };
 
+/// As a node of the scenario says, tick by tick.
+struct NodeAttitude {
+  std::string node;
+  std::size_t place = 0;  // of the object among those of the node
+};
+
 /// To add a model: list it here, give it an overload in attitude.cpp, test it in tests/orbit.
-using Attitude =
-    std::variant<NadirAttitude, SunYawAttitude, InertialAttitude, SpinningAttitude, TableAttitude>;
+using Attitude = std::variant<NadirAttitude, SunYawAttitude, InertialAttitude, SpinningAttitude,
+                              TableAttitude, NodeAttitude>;
 
 /// Inputs of an attitude model.
 struct AttitudeScene {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/time/clock.h"
+
 namespace dmise {
 
 namespace {
@@ -15,7 +17,7 @@ struct Knot {
 class Measurement {
  public:
   Measurement(const Sgp4Batch& batch, const Utc& start)
-      : batch_(batch), start_(start), velocity_(3 * batch.size()), code_(batch.size()) {
+      : batch_(batch), clock_(start), velocity_(3 * batch.size()), code_(batch.size()) {
     error_.max_m.assign(batch.size(), 0.0);
     error_.code.assign(batch.size(), 0);
   }
@@ -41,7 +43,8 @@ class Measurement {
 
  private:
   void positions(double t_s, std::vector<double>& out_m) {
-    batch_.propagate(start_.jd1, start_.jd2 + t_s / 86400.0, out_m, velocity_, code_);
+    const Utc utc = clock_.utc(sim_seconds(t_s));
+    batch_.propagate(utc.jd1, utc.jd2, out_m, velocity_, code_);
     for (std::size_t i = 0; i < code_.size(); ++i)
       if (error_.code[i] == 0) error_.code[i] = code_[i];
   }
@@ -74,7 +77,7 @@ class Measurement {
   }
 
   const Sgp4Batch& batch_;
-  Utc start_;
+  Clock clock_;
   std::vector<double> velocity_;
   std::vector<std::uint8_t> code_;
   CatalogueInterpolationError error_;

@@ -1,4 +1,4 @@
-// The cone test on packs of objects: included by cone_test_{sse2,avx2,avx512}.cpp alone.
+// The cone test on packs of objects: included by cone_test_SET.cpp alone.
 #pragma once
 #include "core/orbit/cone_kernels.h"
 #include "core/orbit/sgp4_pack.h"

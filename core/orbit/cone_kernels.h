@@ -2,6 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 struct PreparedCone {
@@ -20,6 +22,11 @@ struct ConeKernels {
                  const PreparedCone& cone, const std::uint64_t* present, std::uint64_t* inside);
 };
 
-extern const ConeKernels cone_kernels_sse2, cone_kernels_avx2, cone_kernels_avx512;
+#define DMISE_CONE_KERNELS(level)        \
+  namespace level {                      \
+  extern const ConeKernels cone_kernels; \
+  }
+DMISE_EACH_SIMD_SET(DMISE_CONE_KERNELS)
+#undef DMISE_CONE_KERNELS
 
 }  // namespace dmise

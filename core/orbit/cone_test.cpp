@@ -37,7 +37,7 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
   std::vector<PreparedCone> prepared(cones.size());
   std::transform(cones.begin(), cones.end(), prepared.begin(), prepare);
   const ConeKernels& kernels =
-      *kernel_of(simd, &cone_kernels_sse2, &cone_kernels_avx2, &cone_kernels_avx512);
+      *kernel_of(simd, &sse2::cone_kernels, &avx2::cone_kernels, &avx512::cone_kernels);
 
   const auto work = [&](std::size_t begin, std::size_t end) {
     alignas(64) double chunk[3][64 * chunk_words];

@@ -1,5 +1,5 @@
 #include "core/orbit/cone_kernel.h"
 
-namespace dmise {
-const ConeKernels cone_kernels_avx2 = {present_words, cone_words};
-}  // namespace dmise
+namespace dmise::avx2 {
+const ConeKernels cone_kernels = {present_words, cone_words};
+}  // namespace dmise::avx2

@@ -1,5 +1,5 @@
 #include "core/orbit/cone_kernel.h"
 
-namespace dmise {
-const ConeKernels cone_kernels_avx512 = {present_words, cone_words};
-}  // namespace dmise
+namespace dmise::avx512 {
+const ConeKernels cone_kernels = {present_words, cone_words};
+}  // namespace dmise::avx512

@@ -1,5 +1,5 @@
 #include "core/orbit/cone_kernel.h"
 
-namespace dmise {
-const ConeKernels cone_kernels_sse2 = {present_words, cone_words};
-}  // namespace dmise
+namespace dmise::sse2 {
+const ConeKernels cone_kernels = {present_words, cone_words};
+}  // namespace dmise::sse2

@@ -8,6 +8,8 @@
 
 #include "core/base/formatted.h"
 #include "core/base/text_fields.h"
+#include "core/base/units.h"
+#include "core/time/leap_seconds.h"
 
 namespace dmise {
 
@@ -25,7 +27,7 @@ std::optional<int> digits(std::string_view text, std::size_t at, std::size_t wid
 }
 
 /// Length of the UTC day that begins at `midnight` [s]: 86400, or 86401 with a leap second.
-double utc_day_length_s(double midnight) {
+double length_of_day_s(double midnight) {
   double tai1 = 0, tai2 = 0, next1 = 0, next2 = 0;
   // ERFA calls years before 1960 and beyond its table dubious; their days have 86400 s.
   if (eraUtctai(midnight, 0.0, &tai1, &tai2) != 0) return 86400.0;
@@ -33,7 +35,26 @@ double utc_day_length_s(double midnight) {
   return std::round(((next1 - tai1) + (next2 - tai2)) * 86400.0);
 }
 
+constexpr double elapsed_behind_tai_s = 37.0;
+constexpr double first_whole_mjd = 41317;  // 1972-01-01, from which TAI - UTC is in whole seconds
+
 }  // namespace
+
+ElapsedDate elapsed_date(const Utc& utc) {
+  const double day = std::floor((utc.jd1 - mjd_zero_jd) + utc.jd2);
+  if (!(std::abs(day) < 1e8)) return {utc.jd1, utc.jd2};
+  const double fraction = (utc.jd1 - mjd_zero_jd - day) + utc.jd2;
+  if (day < first_whole_mjd) {
+    Tai tai;
+    if (eraUtctai(mjd_zero_jd + day, fraction, &tai.jd1, &tai.jd2) < 0) return {utc.jd1, utc.jd2};
+    return {tai.jd1, tai.jd2 - elapsed_behind_tai_s / day_s};
+  }
+  const auto mjd = static_cast<std::int64_t>(day);
+  const int length_s = utc_day_length_s(mjd);
+  const double ahead_s = tai_minus_utc_s(mjd) - elapsed_behind_tai_s;
+  if (length_s == 86400 && ahead_s == 0.0) return {utc.jd1, utc.jd2};
+  return {mjd_zero_jd + day, (fraction * length_s + ahead_s) / day_s};
+}
 
 bool is_leap_year(int year) { return year % 4 == 0 && (year % 100 != 0 || year % 400 == 0); }
 
@@ -81,7 +102,7 @@ std::optional<CalendarTime> parse_calendar_time(std::string_view text) {
 std::optional<Utc> parse_iso_epoch(std::string_view text) {
   const auto time = parse_calendar_time(text);
   if (!time) return std::nullopt;
-  const double day_length_s = utc_day_length_s(time->midnight_jd);
+  const double day_length_s = length_of_day_s(time->midnight_jd);
   if (time->second_of_day >= day_length_s) return std::nullopt;
   return Utc{time->midnight_jd, time->second_of_day / day_length_s};
 }
@@ -89,7 +110,7 @@ std::optional<Utc> parse_iso_epoch(std::string_view text) {
 std::string format_iso_epoch(const Utc& epoch, int decimals) {
   decimals = std::clamp(decimals, 0, 6);
   const std::int64_t unit = std::llround(std::pow(10.0, decimals));  // in a second
-  const std::int64_t day_length = std::llround(utc_day_length_s(epoch.jd1)) * unit;
+  const std::int64_t day_length = std::llround(length_of_day_s(epoch.jd1)) * unit;
   std::int64_t time = std::llround(epoch.jd2 * static_cast<double>(day_length));
   double midnight = epoch.jd1;
   if (time >= day_length) {

@@ -7,9 +7,16 @@
 
 namespace dmise {
 
-/// Days from `from` to `to` for sorting epochs; ignores leap seconds.
+struct ElapsedScale {};  // TAI - 37 s: equal to UTC, to the bit, since the leap second of 2016
+using ElapsedDate = JulianDate<ElapsedScale>;
+
+/// `utc`, of any split into two parts, on the scale whose days all have 86400 SI seconds. By ERFA's
+/// rates of UTC from 1960 to 1972; before 1960, when there was no UTC, TAI is taken to equal it.
+ElapsedDate elapsed_date(const Utc& utc);
+
+/// Days of 86400 SI seconds from `from` to `to`.
 inline double epoch_days_between(const Utc& from, const Utc& to) {
-  return (to.jd1 - from.jd1) + (to.jd2 - from.jd2);
+  return days_between(elapsed_date(to), elapsed_date(from));
 }
 
 /// Whether `year` is a leap year of the Gregorian calendar.

@@ -1,5 +1,7 @@
 #include "core/orbit/motion.h"
 
+#include "core/base/error.h"
+
 namespace dmise {
 
 namespace {
@@ -22,6 +24,10 @@ struct ToGcrs {
 
 }  // namespace
 
+FramedState state_at(const NodeMotion& motion, const Tai&) {
+  throw Error("only node " + motion.node + " knows where its objects are");
+}
+
 MotionState<Gcrs> in_gcrs(const FramedState& state, const EarthOrientation& earth, SimTime t) {
   return std::visit(ToGcrs{earth, t}, state);
 }
@@ -32,6 +38,8 @@ std::string_view describe(MotionCode code) {
       return "outside the span of its trajectory";
     case MotionCode::underground:
       return "its path enters the Earth";
+    case MotionCode::untold:
+      return "its node gives it no state";
     case MotionCode::ok:
       break;
   }

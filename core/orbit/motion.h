@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -29,11 +31,17 @@ struct StraightMotion {
   MotionState<F> state;
 };
 
+/// Moves as a node of the scenario says, tick by tick. Nothing is known beforehand.
+struct NodeMotion {
+  std::string node;
+  std::size_t place = 0;  // of the object among those of the node
+};
+
 /// Motion of one object of a scenario. Element sets are propagated in batches by
 /// core/orbit/sgp4_batch. To add a model: write its file pair, list it here, give it a `state_at`,
 /// read it in core/config/motion_config.cpp, test it in tests/orbit.
 using MotionModel = std::variant<ConstantPosition<Itrs>, ConstantPosition<Gcrs>, TwoBodyMotion,
-                                 Trajectory, StraightMotion<Itrs>>;
+                                 Trajectory, StraightMotion<Itrs>, NodeMotion>;
 
 template <class F>
 FramedState state_at(const ConstantPosition<F>& motion, const Tai&) {
@@ -49,6 +57,8 @@ FramedState state_at(const StraightMotion<F>& motion, const Tai& time) {
   return MotionState<F>{position_m + velocity_m_per_s * seconds_between(motion.epoch, time),
                         velocity_m_per_s};
 }
+
+[[noreturn]] FramedState state_at(const NodeMotion& motion, const Tai& time);
 
 /// State at `time`. Throws `Error` if the model has none.
 inline FramedState state_at(const MotionModel& motion, const Tai& time) {
@@ -70,6 +80,7 @@ enum class MotionCode : std::uint8_t {
   ok = 0,
   outside_span = 16,  // of a trajectory from a file
   underground = 17,   // the path enters the Earth
+  untold = 18,        // its node gives none
 };
 
 /// Text for a log line, such as "outside the span of its trajectory".

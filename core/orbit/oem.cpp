@@ -6,7 +6,9 @@
 #include <array>
 #include <iterator>
 #include <optional>
+#include <pugixml.hpp>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text_fields.h"
@@ -18,21 +20,87 @@ namespace dmise {
 
 namespace {
 
-/// Time systems other than UTC, and TAI minus each [s].
+/// Time systems other than UTC, and TAI minus each [s]; TDB and TT differ by up to 2 ms more.
 constexpr std::pair<std::string_view, double> time_systems[] = {
-    {"TAI", 0.0}, {"TT", -32.184}, {"GPS", 19.0}};
+    {"TAI", 0.0}, {"TT", -32.184}, {"GPS", 19.0}, {"TDB", -32.184}};
+
+/// A line of an OEM in KVN, and its number in the file.
+struct OemLine {
+  int number = 0;
+  std::string text;
+};
+
+std::vector<OemLine> kvn_lines(std::string_view text) {
+  std::vector<OemLine> lines;
+  LineReader reader(text);
+  while (const auto line = reader.next())
+    lines.push_back({reader.line(), std::string(trimmed(*line))});
+  return lines;
+}
+
+/// The same of an OEM in XML (CCSDS 505.0-B): metadata become KEY = value, states a line each.
+/// Throws `ConfigError`.
+std::vector<OemLine> xml_lines(std::string_view text, const std::string& source) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+  const auto line_at = [&](std::ptrdiff_t offset) {
+    const auto end = std::min(text.size(), std::size_t(std::max<std::ptrdiff_t>(offset, 0)));
+    return 1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(end), '\n'));
+  };
+  if (!result)
+    throw ConfigError(at_line(source, line_at(result.offset),
+                              std::string("invalid XML: ") + result.description()));
+  std::vector<OemLine> lines;
+  // Lines are counted on from the last node, which is before the next.
+  int number = 1;
+  std::ptrdiff_t counted = 0;
+  const auto add = [&](const pugi::xml_node& node, std::string line) {
+    for (const std::ptrdiff_t at = node.offset_debug(); counted < at; ++counted)
+      number += text[std::size_t(counted)] == '\n';
+    lines.push_back({number, std::move(line)});
+  };
+  const pugi::xml_node oem =
+      document.child("oem") ? document.child("oem") : document.child("ndm").child("oem");
+  if (oem) add(oem, std::string("CCSDS_OEM_VERS = ") + oem.attribute("version").value());
+  for (const pugi::xml_node segment : oem.child("body").children("segment")) {
+    add(segment, "META_START");
+    for (const pugi::xml_node field : segment.child("metadata").children())
+      add(field, std::string(field.name()) + " = " + field.child_value());
+    const pugi::xml_node data = segment.child("data");
+    add(data, "META_STOP");
+    for (const pugi::xml_node state : data.children("stateVector")) {
+      std::string line = state.child_value("EPOCH");
+      for (const char* key : {"X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT"}) {
+        const std::string unit = state.child(key).attribute("units").value();
+        if (!unit.empty() && upper_case(unit) != (key[1] ? "KM/S" : "KM"))
+          throw ConfigError(at_line(source, line_at(state.child(key).offset_debug()),
+                                    "the unit of " + std::string(key) + " is not " +
+                                        (key[1] ? "km/s" : "km") + got(unit)));
+        line += std::string(" ") + std::string(trimmed(state.child_value(key)));
+      }
+      add(state, std::move(line));
+    }
+  }
+  return lines;
+}
+
+bool is_xml(std::string_view text) {
+  return trimmed(without_byte_order_mark(text).substr(0, 1000)).starts_with('<');
+}
 
 /// Parses one file from top to bottom; the members are the state of the parser.
 class OemReader {
  public:
-  OemReader(std::string_view text, const std::string& source) : lines_(text) {
+  OemReader(std::string_view text, const std::string& source)
+      : lines_(is_xml(text) ? xml_lines(text, source) : kvn_lines(text)) {
     trajectory_.source = source;
   }
 
   Trajectory read() {
     enum class Part { header, metadata, data, covariance } part = Part::header;
-    while (const auto next = lines_.next()) {
-      const std::string_view line = trimmed(*next);
+    for (const OemLine& next : lines_) {
+      number_ = next.number;
+      const std::string_view line = next.text;
       if (line.empty() || line.substr(0, 7) == "COMMENT") continue;
       if (line == "META_START") {
         finish_segment();
@@ -73,11 +141,12 @@ class OemReader {
   struct Declared {
     bool frame = false, time = false, eme2000 = false;
     std::optional<double> tai_minus_system_s;  // none: UTC
+    bool is_tdb = false;
     std::string usable_start, usable_stop;
   };
 
   [[noreturn]] void fail(const std::string& reason, std::string_view value) const {
-    throw ConfigError(at_line(trajectory_.source, lines_.line(), reason + got(value)));
+    throw ConfigError(at_line(trajectory_.source, number_, reason + got(value)));
   }
 
   void metadata(std::string_view key, std::string_view value) {
@@ -142,6 +211,7 @@ class OemReader {
         std::ranges::find(time_systems, system, [](const auto& s) { return s.first; });
     if (known == std::end(time_systems)) fail("TIME_SYSTEM is not supported", system);
     declared_.tai_minus_system_s = known->second;
+    declared_.is_tdb = system == "TDB";
   }
 
   void check_metadata() const {
@@ -158,7 +228,11 @@ class OemReader {
       if (!utc || eraUtctai(utc->jd1, utc->jd2, &tai.jd1, &tai.jd2) < 0) fail("not a time", text);
       return tai;
     }
-    return {time->midnight_jd, (time->second_of_day + *declared_.tai_minus_system_s) / day_s};
+    const double of_day = time->second_of_day / day_s;
+    const double tdb_minus_tt_s =
+        declared_.is_tdb ? eraDtdb(time->midnight_jd, of_day, of_day, 0.0, 0.0, 0.0) : 0.0;
+    return {time->midnight_jd,
+            (time->second_of_day + *declared_.tai_minus_system_s - tdb_minus_tt_s) / day_s};
   }
 
   void add_state(std::string_view line) {
@@ -215,7 +289,8 @@ class OemReader {
     segment_.reset();
   }
 
-  LineReader lines_;
+  std::vector<OemLine> lines_;
+  int number_ = 0;  // of the line at hand
   Trajectory trajectory_;
   std::optional<OemSegment> segment_;
   std::optional<std::string> name_, id_;  // of the first segment

@@ -33,11 +33,11 @@ struct Trajectory {
   std::vector<OemSegment> segments;
 };
 
-/// Reads an OEM in KVN: geocentric, in ICRF/GCRF, EME2000 (rotated to GCRS by the frame bias), ITRF
-/// or TEME; times in UTC, TAI, TT or GPS. Without INTERPOLATION, lines are joined by Hermite
-/// polynomials of degree 7 on positions and velocities. A segment of one line covers its instant
-/// alone. Covariances are ignored. Throws `ConfigError` `file:line: reason, got "value"`, also if
-/// segments differ in OBJECT_NAME or OBJECT_ID.
+/// Reads an OEM in KVN or XML: geocentric, in ICRF/GCRF, EME2000 (rotated to GCRS by the frame
+/// bias), ITRF or TEME; times in UTC, TAI, TT, TDB or GPS. Without INTERPOLATION, lines are joined
+/// by Hermite polynomials of degree 7 on positions and velocities. A segment of one line covers its
+/// instant alone. Covariances are ignored. Throws `ConfigError` `file:line: reason, got "value"`,
+/// also if segments differ in OBJECT_NAME or OBJECT_ID.
 Trajectory read_oem(const std::string& path);
 Trajectory parse_oem(std::string_view text, const std::string& source);
 

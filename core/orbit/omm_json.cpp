@@ -39,6 +39,7 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
 
   bool null() override {
     other("null");
+    refuse_between_messages("null");
     return true;
   }
   bool boolean(bool flag) override { return scalar(flag ? "true" : "false"); }
@@ -93,9 +94,12 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   }
   bool scalar(const std::string& text) {
     if (depth_ == message_depth_ && depth_ > 0) omm_.set(key_, text);
+    refuse_between_messages(text);
+    return true;
+  }
+  void refuse_between_messages(const std::string& text) {
     if (message_depth_ == 0 && depth_ <= 1)
       file_.refused.push_back({line_, "not a message" + got(text)});
-    return true;
   }
 
   CatalogueFile& file_;

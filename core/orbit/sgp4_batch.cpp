@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/orbit/epoch.h"
 #include "core/orbit/sgp4_groups.h"
 #include "core/orbit/sgp4_kernels.h"
 
@@ -63,11 +64,11 @@ struct Sgp4Batch::State {
     return g.deep ? g.far[p.slot / block_lanes].secular : g.near[p.slot / block_lanes].secular;
   }
 
-  double minutes(const Place& p, double jd1, double jd2) const {
+  double minutes(const Place& p, const ElapsedDate& time) const {
     const SecularTerms<Lanes>& s = secular(p);
     const int lane = static_cast<int>(p.slot % block_lanes);
-    return (jd1 - s.epoch_jd1.lane[lane]) * minutes_per_day +
-           (jd2 - s.epoch_jd2.lane[lane]) * minutes_per_day;
+    return (time.jd1 - s.epoch_jd1.lane[lane]) * minutes_per_day +
+           (time.jd2 - s.epoch_jd2.lane[lane]) * minutes_per_day;
   }
 
   /// Works on one tile of the output after the other, so that it stays in the cache.
@@ -144,7 +145,8 @@ std::string_view describe(Sgp4Code code) {
 }
 
 Sgp4Batch::Sgp4Batch(SimdLevel simd) : state_(std::make_unique<State>()) {
-  state_->kernels = kernel_of(simd, &kernels_sse2, &kernels_avx2, &kernels_avx512);
+  state_->kernels =
+      kernel_of(simd, &sse2::sgp4_kernels, &avx2::sgp4_kernels, &avx512::sgp4_kernels);
 }
 
 Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, SimdLevel simd)
@@ -191,8 +193,10 @@ void Sgp4Batch::propagate(std::span<const Utc> times, std::span<double> position
   for (std::size_t start = 0; start < times.size(); start += times_at_once) {
     const std::size_t count = std::min(times_at_once, times.size() - start);
     Instant instants[times_at_once];
-    for (std::size_t k = 0; k < count; ++k)
-      instants[k] = {times[start + k].jd1, times[start + k].jd2};
+    for (std::size_t k = 0; k < count; ++k) {
+      const ElapsedDate time = elapsed_date(times[start + k]);
+      instants[k] = {time.jd1, time.jd2};
+    }
     const Output out{position_m.data() + 3 * n * start, velocity_m_per_s.data() + 3 * n * start,
                      code.data() + n * start, n};
     std::fill_n(out.code, n * count, std::uint8_t{0});
@@ -209,6 +213,7 @@ void Sgp4Batch::propagate_some(std::span<const std::uint32_t> objects, double jd
                                std::span<std::uint8_t> code) const {
   check_sizes(objects.size(), position_m, velocity_m_per_s, code);
   const Output out{position_m.data(), velocity_m_per_s.data(), code.data(), objects.size()};
+  const ElapsedDate time = elapsed_date({jd1, jd2});
   for (std::size_t k = 0; k < objects.size(); ++k) {
     if (objects[k] >= size())
       throw Error("SGP4: object " + std::to_string(objects[k]) + " of " + std::to_string(size()));
@@ -237,7 +242,7 @@ void Sgp4Batch::propagate_some(std::span<const std::uint32_t> objects, double jd
       const State::Place& p = state_->places[objects[k]];
       if (p.code != 0 || p.group != group) continue;
       some.copy(g, p.slot, lanes);
-      some.t.lane[lanes] = state_->minutes(p, jd1, jd2);
+      some.t.lane[lanes] = state_->minutes(p, time);
       to[lanes++] = k;
       if (lanes == block_lanes) flush();
     }
@@ -279,7 +284,7 @@ double Sgp4Batch::minutes_since_epoch(std::size_t object, double jd1, double jd2
   if (p.code != 0)
     throw Error("SGP4: object " + std::to_string(object) +
                 " has no epoch: " + std::string(describe(static_cast<Sgp4Code>(p.code))));
-  return state_->minutes(p, jd1, jd2);
+  return state_->minutes(p, elapsed_date({jd1, jd2}));
 }
 
 }  // namespace dmise

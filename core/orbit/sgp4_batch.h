@@ -83,7 +83,7 @@ class Sgp4Batch {
   /// One object at one time in minutes from its own epoch.
   Sgp4State propagate_one(std::size_t object, double minutes_since_epoch) const;
 
-  /// Minutes from an object's epoch to `jd1 + jd2` [d, UTC], without leap seconds, as SGP4 counts.
+  /// Minutes of 60 SI seconds from an object's epoch to `jd1 + jd2` [d, UTC].
   double minutes_since_epoch(std::size_t object, double jd1, double jd2) const;
 
  private:

@@ -1,5 +1,5 @@
 // SGP4 on packs of objects, one source for every instruction set: included only by
-// sgp4_kernel_{sse2,avx2,avx512}.cpp. Each lane's result depends on that lane alone: if the lanes
+// sgp4_kernel_SET.cpp. Each lane's result depends on that lane alone: if the lanes
 // of a pack take different branches, the pack evaluates both and each lane selects its own.
 //
 // Changes of form, not of result, against the scalar reference:
@@ -30,7 +30,7 @@ struct Ahead {
 };
 DMISE_INLINE void fetch(const Ahead& a, std::size_t quarter) {
   const char* from = a.from + quarter * a.quarter_bytes;
-  for (std::size_t k = 0; k < a.quarter_bytes; k += 64) _mm_prefetch(from + k, _MM_HINT_T0);
+  for (std::size_t k = 0; k < a.quarter_bytes; k += 64) __builtin_prefetch(from + k);
 }
 
 /// One of `parts` pieces of a block.

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/base/simd_sets.h"
 #include "core/orbit/sgp4_terms.h"
 
 // Functions that each instruction set's file provides to Sgp4Batch. Do not include headers with
@@ -60,6 +61,11 @@ struct Kernels {
   void (*deep_block)(const DeepBlock& block, const Lanes& minutes, BlockStates& out);
 };
 
-extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
-
 }  // namespace dmise::sgp4
+
+#define DMISE_SGP4_KERNELS(level)          \
+  namespace dmise::level {                 \
+  extern const sgp4::Kernels sgp4_kernels; \
+  }
+DMISE_EACH_SIMD_SET(DMISE_SGP4_KERNELS)
+#undef DMISE_SGP4_KERNELS

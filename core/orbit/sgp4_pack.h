@@ -1,9 +1,11 @@
 // Vectors of doubles, as wide as the instruction set that this file is compiled for: 8 lanes with
-// AVX-512 (F, DQ), 4 with AVX2 and FMA, else 2 with SSE2. Included only by sgp4_kernel.h, in one
-// file per instruction set; everything has internal linkage, so that no function compiled for one
-// set is linked into code that runs on another.
+// AVX-512 (F, DQ), 4 with AVX2 and FMA, else 2, by the compiler's portable vectors. Included only
+// by sgp4_kernel.h, in one file per instruction set; everything has internal linkage, so that no
+// function compiled for one set is linked into code that runs on another.
 #pragma once
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <cstdint>
 
@@ -126,53 +128,78 @@ DMISE_INLINE One negate_odd(One x, One odd) {
 #else
 
 constexpr int one_lanes = 2;
+#if defined(__FP_FAST_FMA)  // as on AArch64
+constexpr bool fused = true;
+#else
 constexpr bool fused = false;
+#endif
+
+using Doubles = double __attribute__((vector_size(16)));
+using Words = std::int64_t __attribute__((vector_size(16)));
 
 struct OneMask {
-  __m128d m;
+  Words m;  // 0 or -1 a lane
 };
-DMISE_INLINE OneMask operator&(OneMask a, OneMask b) { return {_mm_and_pd(a.m, b.m)}; }
-DMISE_INLINE OneMask operator|(OneMask a, OneMask b) { return {_mm_or_pd(a.m, b.m)}; }
-DMISE_INLINE OneMask operator~(OneMask a) {
-  return {_mm_xor_pd(a.m, _mm_castsi128_pd(_mm_set1_epi64x(-1)))};
+DMISE_INLINE OneMask operator&(OneMask a, OneMask b) { return {a.m & b.m}; }
+DMISE_INLINE OneMask operator|(OneMask a, OneMask b) { return {a.m | b.m}; }
+DMISE_INLINE OneMask operator~(OneMask a) { return {~a.m}; }
+DMISE_INLINE unsigned bits(OneMask a) {
+#if defined(__x86_64__)
+  return unsigned(_mm_movemask_pd((__m128d)a.m));
+#else
+  return unsigned(a.m[0] & 1) | unsigned(a.m[1] & 2);
+#endif
 }
-DMISE_INLINE unsigned bits(OneMask a) { return unsigned(_mm_movemask_pd(a.m)); }
 
 struct One {
-  __m128d v;
+  Doubles v;
   One() = default;
-  DMISE_INLINE One(__m128d x) : v(x) {}
-  DMISE_INLINE One(double x) : v(_mm_set1_pd(x)) {}
+  DMISE_INLINE One(Doubles x) : v(x) {}
+  DMISE_INLINE One(double x) : v{x, x} {}
 };
-DMISE_INLINE One load_one(const double* p) { return _mm_load_pd(p); }
-DMISE_INLINE void store(double* p, One a) { _mm_store_pd(p, a.v); }
-DMISE_INLINE void store_anywhere(double* p, One a) { _mm_storeu_pd(p, a.v); }
+DMISE_INLINE One load_one(const double* p) {
+  return *reinterpret_cast<const Doubles*>(__builtin_assume_aligned(p, 16));
+}
+DMISE_INLINE void store_anywhere(double* p, One a) { __builtin_memcpy(p, &a.v, sizeof a.v); }
+DMISE_INLINE void store(double* p, One a) {
+  store_anywhere(static_cast<double*>(__builtin_assume_aligned(p, 16)), a);
+}
 DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
-  if (mask & 1u) _mm_storel_pd(p, a.v);
-  if (mask & 2u) _mm_storeh_pd(p + 1, a.v);
+  if (mask & 1u) p[0] = a.v[0];
+  if (mask & 2u) p[1] = a.v[1];
 }
-DMISE_INLINE One operator+(One a, One b) { return _mm_add_pd(a.v, b.v); }
-DMISE_INLINE One operator-(One a, One b) { return _mm_sub_pd(a.v, b.v); }
-DMISE_INLINE One operator*(One a, One b) { return _mm_mul_pd(a.v, b.v); }
-DMISE_INLINE One operator/(One a, One b) { return _mm_div_pd(a.v, b.v); }
-DMISE_INLINE One madd(One a, One b, One c) { return a * b + c; }
-DMISE_INLINE One nmadd(One a, One b, One c) { return c - a * b; }
-DMISE_INLINE One sqrt(One a) { return _mm_sqrt_pd(a.v); }
-DMISE_INLINE One max(One a, One b) { return _mm_max_pd(a.v, b.v); }
-DMISE_INLINE One abs(One a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a.v); }
-DMISE_INLINE OneMask operator<(One a, One b) { return {_mm_cmplt_pd(a.v, b.v)}; }
-DMISE_INLINE OneMask operator<=(One a, One b) { return {_mm_cmple_pd(a.v, b.v)}; }
-DMISE_INLINE OneMask operator==(One a, One b) { return {_mm_cmpeq_pd(a.v, b.v)}; }
+DMISE_INLINE One operator+(One a, One b) { return a.v + b.v; }
+DMISE_INLINE One operator-(One a, One b) { return a.v - b.v; }
+DMISE_INLINE One operator*(One a, One b) { return a.v * b.v; }
+DMISE_INLINE One operator/(One a, One b) { return a.v / b.v; }
+DMISE_INLINE One madd(One a, One b, One c) {
+  if constexpr (!fused) return a * b + c;
+  return Doubles{__builtin_fma(a.v[0], b.v[0], c.v[0]), __builtin_fma(a.v[1], b.v[1], c.v[1])};
+}
+DMISE_INLINE One nmadd(One a, One b, One c) {
+  if constexpr (!fused) return c - a * b;
+  return madd(-a.v, b, c);
+}
+DMISE_INLINE One sqrt(One a) {
+#if defined(__x86_64__)
+  return Doubles(_mm_sqrt_pd(a.v));
+#else
+  return Doubles{__builtin_sqrt(a.v[0]), __builtin_sqrt(a.v[1])};
+#endif
+}
+DMISE_INLINE OneMask operator<(One a, One b) { return {Words(a.v < b.v)}; }
+DMISE_INLINE OneMask operator<=(One a, One b) { return {Words(a.v <= b.v)}; }
+DMISE_INLINE OneMask operator==(One a, One b) { return {Words(a.v == b.v)}; }
 DMISE_INLINE One select(OneMask m, One yes, One no) {
-  return _mm_or_pd(_mm_and_pd(m.m, yes.v), _mm_andnot_pd(m.m, no.v));
+  return Doubles((m.m & Words(yes.v)) | (~m.m & Words(no.v)));
 }
+DMISE_INLINE One max(One a, One b) { return select(b < a, a, b); }
+constexpr Words sign_bits = {INT64_MIN, INT64_MIN};
+DMISE_INLINE One abs(One a) { return Doubles(Words(a.v) & ~sign_bits); }
 DMISE_INLINE One copy_sign(One magnitude, One sign) {
-  const __m128d s = _mm_set1_pd(-0.0);
-  return _mm_or_pd(_mm_andnot_pd(s, magnitude.v), _mm_and_pd(s, sign.v));
+  return Doubles((Words(magnitude.v) & ~sign_bits) | (Words(sign.v) & sign_bits));
 }
-DMISE_INLINE One negate_odd(One x, One odd) {
-  return _mm_xor_pd(x.v, _mm_castsi128_pd(_mm_slli_epi64(_mm_castpd_si128(odd.v), 63)));
-}
+DMISE_INLINE One negate_odd(One x, One odd) { return Doubles(Words(x.v) ^ (Words(odd.v) << 63)); }
 
 #endif
 

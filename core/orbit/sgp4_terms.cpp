@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/orbit/epoch.h"
+
 // Equations: Hoots & Roehrich, Spacetrack Report 3 (1980), as revised by Vallado, Crawford, Hujsak
 // & Kelso, AIAA 2006-6753. Products and sums keep the paper's order: with strong drag the longitude
 // is quadratic in time with a factor of 1e4 and more, so that the last bit of a term becomes 1e-7
@@ -113,8 +115,9 @@ Model initialise(const MeanElements& el) {
       node_dot_j2 + (0.5 * k2 * (4.0 - 19.0 * cos2_i) + 2.0 * k3 * (3.0 - 7.0 * cos2_i)) * cos_i;
 
   SecularTerms<double> sec{};
-  sec.epoch_jd1 = el.epoch_jd1;
-  sec.epoch_jd2 = el.epoch_jd2;
+  const ElapsedDate epoch = elapsed_date({el.epoch_jd1, el.epoch_jd2});
+  sec.epoch_jd1 = epoch.jd1;
+  sec.epoch_jd2 = epoch.jd2;
   sec.m = el.mean_anomaly_rad;
   sec.m_dot = m_dot;
   sec.argp = el.argument_of_perigee_rad;

@@ -10,14 +10,14 @@
 namespace dmise {
 namespace {
 
-struct Sample {
+struct SpectrumSample {
   double wavelength_nm, value;
 };
 #include "core/photometry/reference_spectra_tables.inc"
 
-Spectrum from_samples(std::span<const Sample> samples, double unit_w_per_m2_m) {
+Spectrum from_samples(std::span<const SpectrumSample> samples, double unit_w_per_m2_m) {
   Spectrum spectrum;
-  for (const Sample& sample : samples) {
+  for (const SpectrumSample& sample : samples) {
     spectrum.irradiance.add(sample.wavelength_nm * nm, sample.value * unit_w_per_m2_m);
   }
   return spectrum;

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/effects/plan_facts.h"
 #include "core/plan/knapsack.h"
 
 namespace dmise {

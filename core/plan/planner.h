@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/plannable_effect.h"
 
 namespace dmise {
 

@@ -5,10 +5,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
-#include "core/optics/exclusion.h"
 #include "core/photometry/magnitude_system.h"
-#include "core/products/frame_notes.h"
-#include "core/wcs/wcs.h"
 
 namespace dmise {
 
@@ -80,40 +77,6 @@ struct Detection {
   bool excluded = false;   // Sun, Moon or limb was nearer to the axis than the camera allows
 
   bool operator==(const Detection&) const = default;
-};
-
-/// Report of an exposure, also of one without detections.
-struct FrameReport {
-  std::string sensor;
-  std::uint32_t frame = 0;                                 // counts from 1
-  SimTime start, middle, end;                              // of the exposure
-  double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;  // ICRS, at mid exposure
-  Wcs wcs;
-  Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // at mid exposure
-  double limiting_magnitude = 0.0;  // of a point source at SNR = detection threshold
-  double background_e = 0.0;        // median [e-/px]
-  double noise_e = 0.0;             // median of the per-pixel noise [e-]
-  double zero_point_mag = 0.0;      // magnitude of a source of 1 e-/s
-  MagnitudeScale magnitudes;        // of this report and its detections
-  // Of the Gaussian with the PSF's sum of squares in the frame's middle, before pixel integration.
-  double psf_fwhm_px = 0.0;
-  std::uint32_t psf_stars = 0;  // from which the PSF was measured; 0: it is the header's
-  // Stars of a catalogue that stand well out of the noise where the header points, and how many of
-  // them the frame shows there.
-  std::uint32_t stars_expected = 0, stars_found = 0;
-  std::uint32_t detections = 0;  // published
-  std::uint32_t star_like = 0;   // sources that move like stars
-  std::uint32_t saturated_px = 0;
-  std::uint32_t stars_rendered = 0, objects_rendered = 0;
-  std::string plan;  // "effect effect ..." that ran, in order
-  // Detection was off: limiting magnitude, background, noise, saturated_px and the numbers of
-  // detections are 0.
-  bool detection_off = false;
-  Excluded excluded;            // bodies nearer to the axis than the camera allows
-  bool shutter_closed = false;  // because of them: the frame is dark, and detection was off
-  FrameNotes notes;             // of another camera's frame; not sent
-
-  bool operator==(const FrameReport&) const = default;
 };
 
 }  // namespace dmise

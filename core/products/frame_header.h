@@ -17,6 +17,7 @@
 #include "core/products/observation.h"
 #include "core/products/unknown_facts.h"
 #include "core/sky/refraction.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 

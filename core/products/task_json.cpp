@@ -14,6 +14,9 @@ std::string to_json(const Task& t, const std::function<std::string(SimTime)>& ut
   json.field(name "_ns", t.field_.ns).field(name "_utc", utc(t.field_));
 #define DMISE_LIST(field_, name, ...) json.list(name, t.field_);
   DMISE_TASK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_LIST, DMISE_LIST)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_LIST
   return json.end_object().take();
 }
 

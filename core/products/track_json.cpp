@@ -20,6 +20,11 @@ std::string to_json(const Track& t, const std::function<std::string(SimTime)>& u
 #define DMISE_LIST(field_, name, ...) json.list(name, t.field_);
 #define DMISE_VECTOR(field_, name) json.list(name, {t.field_.x, t.field_.y, t.field_.z});
   DMISE_TRACK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_LIST)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_VECTOR
   return json.end_object().take();
 }
 

@@ -23,8 +23,9 @@ struct Truth {
   double apparent_ra_rad = 0.0, apparent_dec_rad = 0.0;  // with the observer's aberration, mid
   double true_elevation_rad = 0.0;                       // 0 for a space sensor
   double phase_angle_rad = 0.0;                          // Sun-object-observer
-  double sunlit = 0.0;          // fraction of the Sun's disc, mean over the exposure
-  double true_magnitude = 0.0;  // V above the atmosphere, when fully sunlit
+  double sunlit = 0.0;  // fraction of the Sun's disc, mean over the exposure
+  /// V above the atmosphere, when fully sunlit; with the light of Earth and Moon, if it is drawn.
+  double true_magnitude = 0.0;
   // Light in the frame is that on pixels that collect it, not in a border of reference pixels.
   double rendered_signal_e = 0.0;                   // expected electrons deposited in the frame
   double rendered_x_px = 0.0, rendered_y_px = 0.0;  // centroid of its light in the frame; 0: none

@@ -36,19 +36,43 @@ bool is_fixed(const MotionModel& model) {
          std::holds_alternative<ConstantPosition<Gcrs>>(model);
 }
 
+bool is_above_ground(const Vec<Gcrs>& position_m, const StateInstant& at,
+                     const Ellipsoid& ellipsoid) {
+  const OblateEarth body = oblate_earth(at.earth, ellipsoid);
+  return norm(body.stretched(position_m)) > body.ellipsoid.equatorial_radius_m + least_height_m;
+}
+
+Placed without_state(MotionCode code) { return {{}, std::uint8_t(code)}; }
+
 /// State from a model other than SGP4; its velocity is the slope of the position.
 Placed placed(const MotionModel& model, const StateInstant& at, const Ellipsoid& ellipsoid) {
   if (const auto* path = std::get_if<Trajectory>(&model); path && !covers(*path, at.tai))
-    return {{}, std::uint8_t(MotionCode::outside_span)};
+    return without_state(MotionCode::outside_span);
   try {
     const auto state = in_gcrs(path_at(model, at.tai), at.earth, at.time);
-    const OblateEarth body = oblate_earth(at.earth, ellipsoid);
-    if (is_fixed(model) || norm(body.stretched(state.position_m)) >
-                               body.ellipsoid.equatorial_radius_m + least_height_m)
-      return {state, 0};
+    if (is_fixed(model) || is_above_ground(state.position_m, at, ellipsoid)) return {state, 0};
   } catch (const Error&) {  // a path through the Earth's centre
   }
-  return {{}, std::uint8_t(MotionCode::underground)};
+  return without_state(MotionCode::underground);
+}
+
+/// State of an object that a node moves, on the straight line through what it told of a tick.
+Placed told_place(const ObjectStates* told, std::size_t i, const StateInstant& at,
+                  const Ellipsoid& ellipsoid) {
+  if (!told) return without_state(MotionCode::untold);
+  if (told->code[i] != 0) return {{}, told->code[i]};
+  const Vec<Gcrs> slope_m_per_s = told->slope(i);
+  const double dt_s = (at.time - told->time).seconds();
+  const Vec<Gcrs> position_m = told->position(i) + slope_m_per_s * dt_s;
+  if (!is_above_ground(position_m, at, ellipsoid)) return without_state(MotionCode::underground);
+  return {{position_m, slope_m_per_s}, 0};
+}
+
+/// An object that its node does not turn at this tick is not in the scene.
+void take_out(ObjectStates& states, std::size_t k) {
+  for (auto* numbers : {&states.position_m, &states.slope_m_per_s, &states.velocity_m_per_s})
+    set(*numbers, states.count, k, {});
+  states.code[k] = std::uint8_t(MotionCode::untold);
 }
 
 /// States of SGP4 at one instant in TEME: 3 x elements.
@@ -73,13 +97,69 @@ struct Sgp4States {
 
 /// The objects wanted at the instants of one time.
 struct StateSource::Scene {
+  const ObjectPopulation& population;
   const StateInstants& instants;
+  Tick tick = 0;
+  const ActorStates* told = nullptr;
   bool all = true;
   std::span<const std::uint32_t> objects;  // unless all
   std::size_t count = 0, with_elements = 0;
   std::array<Sgp4States, 3> sgp4;
 
   std::size_t object(std::size_t k) const { return all ? k : objects[k]; }
+
+  const MotionModel& model(std::size_t k) const {
+    return population.models[object(k) - population.elements.size()];
+  }
+
+  /// What the node of a motion or an attitude says; null if that is not known.
+  template <class ByNode>
+  const ObjectStates* told_by(const ByNode& by_node) const {
+    return told ? told->of(by_node.node, tick, by_node.place) : nullptr;
+  }
+
+  Placed placed_at(std::size_t k, std::size_t instant) const {
+    const StateInstant& at = instants[instant];
+    if (k < with_elements) return sgp4[instant].placed(k, at);
+    if (const auto* by_node = std::get_if<NodeMotion>(&model(k)))
+      return told_place(told_by(*by_node), by_node->place, at, population.ellipsoid);
+    return placed(model(k), at, population.ellipsoid);
+  }
+
+  /// The velocity of an object without elements that has a state.
+  Vec<Gcrs> velocity_of(std::size_t k) const {
+    if (const auto* by_node = std::get_if<NodeMotion>(&model(k))) {
+      const ObjectStates& states = *told_by(*by_node);
+      return get<Gcrs>(states.velocity_m_per_s, states.count, by_node->place);
+    }
+    const StateInstant& now = instants[1];
+    return in_gcrs(state_at(model(k), now.tai), now.earth, now.time).velocity_m_per_s;
+  }
+
+  /// Empty if the attitude is a node's, which does not tell it.
+  std::optional<AttitudeState> attitude_of(std::size_t k, const Attitude& attitude,
+                                           const std::array<Vec<Gcrs>, 3>& sun_m) const {
+    if (const auto* by_node = std::get_if<NodeAttitude>(&attitude)) {
+      const ObjectStates* states = told_by(*by_node);
+      return states ? states->attitude(by_node->place) : std::nullopt;
+    }
+    const auto scene = [&](std::size_t j) -> std::optional<AttitudeScene> {
+      const Placed there = placed_at(k, j);
+      if (there.code) return std::nullopt;
+      return AttitudeScene{instants[j].time.seconds(), there.state.position_m,
+                           there.state.velocity_m_per_s, sun_m[j]};
+    };
+    // At an end of a trajectory or a table the rate is a one-sided difference.
+    const AttitudeScene now = *scene(1);
+    const auto* table = std::get_if<TableAttitude>(&attitude);
+    const auto within = [&](const std::optional<AttitudeScene>& s) {
+      return s &&
+             (!table || (s->time_s >= table->time_s.front() && s->time_s <= table->time_s.back()));
+    };
+    const auto before = scene(0), after = scene(2);
+    return attitude_state(attitude, within(before) ? *before : now, now,
+                          within(after) ? *after : now);
+  }
 };
 
 StateSource::StateSource(const ObjectPopulation& population, Clock clock, Threads& threads)
@@ -98,9 +178,12 @@ StateInstants StateSource::instants(SimTime time, std::span<const EarthOrientati
   return {at({time.ns - slope_half_step_ns}), at(time), at({time.ns + slope_half_step_ns})};
 }
 
-ObjectStates StateSource::at(Tick tick, SimTime time) const {
+ObjectStates StateSource::at(Tick tick, SimTime time, const ActorStates* told) const {
   const StateInstants moments = instants(time);
-  Scene scene{.instants = moments,
+  Scene scene{.population = population_,
+              .instants = moments,
+              .tick = tick,
+              .told = told,
               .count = population_.roster.objects.size(),
               .with_elements = batch_.size()};
   for (std::size_t j = 0; j < 3 && scene.with_elements > 0; ++j) {
@@ -109,13 +192,16 @@ ObjectStates StateSource::at(Tick tick, SimTime time) const {
     batch_.propagate(moments[j].utc.jd1, moments[j].utc.jd2, s.position_m, s.velocity_m_per_s,
                      s.code, &threads_);
   }
-  return states_of(scene, tick);
+  return states_of(scene);
 }
 
 ObjectStates StateSource::of_some(std::span<const std::uint32_t> objects, Tick tick,
-                                  const StateInstants& instants) const {
+                                  const StateInstants& instants, const ActorStates* told) const {
   const auto others = std::lower_bound(objects.begin(), objects.end(), batch_.size());
-  Scene scene{.instants = instants,
+  Scene scene{.population = population_,
+              .instants = instants,
+              .tick = tick,
+              .told = told,
               .all = false,
               .objects = objects,
               .count = objects.size(),
@@ -126,11 +212,11 @@ ObjectStates StateSource::of_some(std::span<const std::uint32_t> objects, Tick t
     batch_.propagate_some(objects.first(scene.with_elements), instants[j].utc.jd1,
                           instants[j].utc.jd2, s.position_m, s.velocity_m_per_s, s.code);
   }
-  return states_of(scene, tick);
+  return states_of(scene);
 }
 
-ObjectStates StateSource::states_of(const Scene& scene, Tick tick) const {
-  ObjectStates states{.tick = tick, .time = scene.instants[1].time, .count = scene.count};
+ObjectStates StateSource::states_of(const Scene& scene) const {
+  ObjectStates states{.tick = scene.tick, .time = scene.instants[1].time, .count = scene.count};
   for (auto* numbers : {&states.position_m, &states.slope_m_per_s, &states.velocity_m_per_s})
     numbers->assign(3 * scene.count, 0.0);
   states.code.assign(scene.count, 0);
@@ -158,16 +244,13 @@ void StateSource::add_sgp4(const Scene& scene, ObjectStates& states) const {
 }
 
 void StateSource::add_models(const Scene& scene, ObjectStates& states) const {
-  const StateInstant& now = scene.instants[1];
   for (std::size_t k = scene.with_elements; k < scene.count; ++k) {
-    const MotionModel& model = population_.models[scene.object(k) - batch_.size()];
-    const Placed path = placed(model, now, population_.ellipsoid);
+    const Placed path = scene.placed_at(k, 1);
     states.code[k] = path.code;
     if (path.code) continue;
     set(states.position_m, states.count, k, path.state.position_m);
     set(states.slope_m_per_s, states.count, k, path.state.velocity_m_per_s);
-    const auto state = in_gcrs(state_at(model, now.tai), now.earth, now.time);
-    set(states.velocity_m_per_s, states.count, k, state.velocity_m_per_s);
+    set(states.velocity_m_per_s, states.count, k, scene.velocity_of(k));
   }
 }
 
@@ -196,29 +279,15 @@ void StateSource::add_attitudes(const Scene& wanted, ObjectStates& states) const
     const auto& [k, model] = turning[a];
     states.attitude_object.push_back(static_cast<std::uint32_t>(k));
     if (states.code[k]) continue;
-    const auto scene = [&, k = k](std::size_t j) -> std::optional<AttitudeScene> {
-      const Placed there = k < wanted.with_elements
-                               ? wanted.sgp4[j].placed(k, instants[j])
-                               : placed(population_.models[wanted.object(k) - batch_.size()],
-                                        instants[j], population_.ellipsoid);
-      if (there.code) return std::nullopt;
-      return AttitudeScene{instants[j].time.seconds(), there.state.position_m,
-                           there.state.velocity_m_per_s, sun_m[j]};
-    };
-    // At an end of a trajectory or a table the rate is a one-sided difference.
-    const AttitudeScene now = *scene(1);
-    const auto* table = std::get_if<TableAttitude>(&model);
-    const auto within = [&](const std::optional<AttitudeScene>& s) {
-      return s &&
-             (!table || (s->time_s >= table->time_s.front() && s->time_s <= table->time_s.back()));
-    };
-    const auto before = scene(0), after = scene(2);
-    const AttitudeState state =
-        attitude_state(model, within(before) ? *before : now, now, within(after) ? *after : now);
-    const Quaternion& q = state.gcrs_from_body;
+    const auto state = wanted.attitude_of(k, model, sun_m);
+    if (!state) {
+      take_out(states, k);
+      continue;
+    }
+    const Quaternion& q = state->gcrs_from_body;
     const double components[4] = {q.w, q.x, q.y, q.z};
     for (std::size_t c = 0; c < 4; ++c) states.gcrs_from_body[c * m + a] = components[c];
-    set(states.attitude_rate_rad_per_s, m, a, state.rate_rad_per_s);
+    set(states.attitude_rate_rad_per_s, m, a, state->rate_rad_per_s);
   }
 }
 

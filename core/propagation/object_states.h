@@ -4,6 +4,7 @@
 
 #include "core/base/parallel.h"
 #include "core/orbit/sgp4_batch.h"
+#include "core/propagation/actor_states.h"
 #include "core/propagation/object_population.h"
 #include "core/time/clock.h"
 
@@ -29,12 +30,13 @@ class StateSource {
 
   /// Slopes are symmetric differences of SGP4 over twice `slope_half_step_ns`, and exact for the
   /// other models. The states depend on `time` alone.
-  ObjectStates at(Tick tick, SimTime time) const;
+  /// What a node moves or turns is as `told`; without what it says it has no state.
+  ObjectStates at(Tick tick, SimTime time, const ActorStates* told = nullptr) const;
 
   /// States of `objects`, ascending indices: equal to those of `at` to the bit. Object k of the
   /// result is `objects[k]`, also in `attitude_object`.
   ObjectStates of_some(std::span<const std::uint32_t> objects, Tick tick,
-                       const StateInstants& instants) const;
+                       const StateInstants& instants, const ActorStates* told = nullptr) const;
   /// `known`: orientations that need not be computed.
   StateInstants instants(SimTime time, std::span<const EarthOrientation> known = {}) const;
 
@@ -48,7 +50,7 @@ class StateSource {
 
  private:
   struct Scene;
-  ObjectStates states_of(const Scene& scene, Tick tick) const;
+  ObjectStates states_of(const Scene& scene) const;
   void add_sgp4(const Scene& scene, ObjectStates& states) const;
   void add_models(const Scene& scene, ObjectStates& states) const;
   void add_attitudes(const Scene& scene, ObjectStates& states) const;

@@ -343,6 +343,9 @@ void write_clock(const RunContents& run, JsonWriter& json) {
     json.field("waiting_s", rounded(n.waiting_s, 3)).field("start_s", rounded(n.start_s, 3));
     json.end_object();
   }
+  json.end_array().key("waited_for").begin_array();
+  for (const auto& [name, seconds] : run.waited_for_s)
+    json.begin_array().value(name).value(rounded(seconds, 2)).end_array();
   json.end_array().field("tick_count", run.ticks.size());
   json.key("ticks").begin_array();
   const std::size_t first = run.ticks.size() > most_ticks ? run.ticks.size() - most_ticks : 0;
@@ -365,6 +368,7 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
   json.field("digest", run.digest).field("seed", run.seed).field("start_utc", run.start_utc);
   json.field("duration_s", run.duration_s).field("tick_s", run.tick_s);
   number(json, "wall_s", run.wall_s, 2);
+  json.field("parts", run.parts);
   json.field("every", choice.every);
   json.field("source_every", choice.source_every);
   json.field("frame_count", run.frames.size());

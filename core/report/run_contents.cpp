@@ -53,6 +53,7 @@ void read_record(RunContents& run) {
   run.software = text_or_empty(record, "software");
   run.digest = text_or_empty(record, "digest");
   run.wall_s = optional_number(record, "wall_s");
+  if (record.has("parts")) run.parts = record.get<int>("parts");
   if (record.has("nodes"))
     for (const JsonRecord& node : record.objects("nodes"))
       run.nodes.push_back({node.get<std::string>("name"), number_or(node, "compute_s", 0.0),
@@ -98,6 +99,7 @@ ReportFrame frame_of(const JsonRecord& line, std::size_t sensor) {
                 .limiting_magnitude = optional_number(line, "limiting_magnitude"),
                 .background_e = optional_number(line, "background_e"),
                 .noise_e = optional_number(line, "noise_e")};
+  if (f.limiting_magnitude) *f.limiting_magnitude -= number_or(line, "solar_colour_mag", 0.0);
   if (line.has("sensor_position_gcrs_m")) {
     const auto p = line.numbers<3>("sensor_position_gcrs_m");
     f.sensor_position_m = {p[0], p[1], p[2]};
@@ -108,26 +110,27 @@ ReportFrame frame_of(const JsonRecord& line, std::size_t sensor) {
   return f;
 }
 
+/// A line has the means over the `frames` up to its own.
 void add_cost(const JsonRecord& line, ReportSensor& sensor, ReportFrame* frame) {
-  const double total_s = line.number("total_s");
-  sensor.seconds_per_frame += total_s;
+  const double total_s = line.number("total_s"), frames = number_or(line, "frames", 1.0);
+  sensor.seconds_per_frame += frames * total_s;
   sensor.memory_mb = std::max(sensor.memory_mb, number_or(line, "pss_mb", 0.0));
-  ++sensor.costs;
+  sensor.costs += std::size_t(frames);
   if (frame) frame->total_s = total_s;
-  sensor.effects["detection"].measured_s += number_or(line, "detection_s", 0.0);
+  sensor.effects["detection"].measured_s += frames * number_or(line, "detection_s", 0.0);
   if (line.has("effects_s"))
     for (const auto& [effect, seconds] : line.object("effects_s").all_numbers())
-      sensor.effects[effect].measured_s += seconds;
+      sensor.effects[effect].measured_s += frames * seconds;
   if (!line.has("plan")) return;
   const JsonRecord plan = line.object("plan");
   if (frame) frame->predicted_s = optional_number(plan, "predicted_s");
   for (const auto& [effect, planned] : plan.object("effects").all_objects()) {
     EffectCost& cost = sensor.effects[effect];
-    ++cost.levels[planned.get<std::string>("level")];
+    cost.levels[planned.get<std::string>("level")] += std::size_t(frames);
     if (cost.why.empty()) cost.why = text_or_empty(planned, "why");
     if (!planned.has("predicted_s")) continue;
-    cost.predicted_s += planned.number("predicted_s");
-    ++cost.planned_frames;
+    cost.predicted_s += frames * planned.number("predicted_s");
+    cost.planned_frames += std::size_t(frames);
   }
 }
 
@@ -284,15 +287,25 @@ void read_tracks(RunContents& run) {
   }
 }
 
-/// Reads what the time-master of `dmise launch` reports of its ticks.
+/// Reads what the time-masters of `dmise launch` report of their ticks: of each part of the run
+/// one, after those before it.
 void read_ticks(RunContents& run) {
-  const std::string path = run.directory + "/logs/master.json";
-  if (!path_exists(path)) return;
-  const JsonRecord record(read_text_file(path), path);
-  if (!record.has("ticks")) return;
-  for (const JsonRecord& tick : record.objects("ticks"))
-    run.ticks.push_back({tick.get<Tick>("tick"), tick.number("granted_s"), tick.number("settled_s"),
-                         text_or_empty(tick, "last")});
+  double before_s = 0.0;
+  const auto read = [&](const std::string& path) {
+    const JsonRecord record(read_text_file(path), path);
+    if (record.has("waited_for_s"))
+      for (const auto& [name, seconds] : record.object("waited_for_s").all_numbers())
+        run.waited_for_s[name] += seconds;
+    if (record.has("ticks"))
+      for (const JsonRecord& tick : record.objects("ticks"))
+        run.ticks.push_back({tick.get<Tick>("tick"), before_s + tick.number("granted_s"),
+                             before_s + tick.number("settled_s"), text_or_empty(tick, "last")});
+    before_s += number_or(record, "wall_s", 0.0);
+  };
+  const std::string logs = run.directory + "/logs/master";
+  const auto of_part = [&](int part) { return logs + "-" + std::to_string(part) + ".json"; };
+  for (int part = 1; path_exists(of_part(part)); ++part) read(of_part(part));
+  if (path_exists(logs + ".json")) read(logs + ".json");
 }
 
 void find_files(RunContents& run) {

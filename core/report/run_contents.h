@@ -42,7 +42,8 @@ struct ReportFrame {
   std::string middle_utc;
   double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;
   Vec<Gcrs> sensor_position_m;
-  std::optional<double> limiting_magnitude, background_e, noise_e, total_s, predicted_s;
+  std::optional<double> limiting_magnitude;  // V-solar, whatever the system of the camera
+  std::optional<double> background_e, noise_e, total_s, predicted_s;
   std::size_t stars_found = 0, stars_expected = 0;
   std::string fits, picture, marked;  // paths from the run's directory; empty: not there
 };
@@ -83,6 +84,7 @@ struct NodeCost {
 struct RunContents {
   std::string directory, status, how, reason, software, digest, start_utc, star_catalogue;
   std::optional<double> wall_s;
+  int parts = 1;  // in which the run was made
   std::uint64_t seed = 0;
   double duration_s = 0.0, tick_s = 0.0;
   std::vector<ReportSensor> sensors;
@@ -94,6 +96,7 @@ struct RunContents {
   std::vector<ReportTrack> tracks;
   std::vector<Task> cues;
   std::vector<ReportTick> ticks;
+  std::map<std::string, double> waited_for_s;  // in which the clock waited for a node
   std::vector<NodeCost> nodes;
   std::vector<std::string> files;  // products and logs, paths from the directory
 };

@@ -15,6 +15,7 @@
 #include "core/base/units.h"
 #include "core/ingest/any_frame.h"
 #include "core/optics/psf_table.h"
+#include "core/products/frame_report.h"
 #include "core/score/run_files.h"
 #include "core/score/trail.h"
 #include "core/wcs/wcs.h"

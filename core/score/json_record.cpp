@@ -1,8 +1,12 @@
 #include "core/score/json_record.h"
 
+#include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
@@ -32,9 +36,19 @@ Enum named(const JsonRecord& record, const char* key) {
   const std::string name = record.get<std::string>(key);
   int value = 0;
   while (value < 3 && name != name_of(Enum(value))) ++value;
-  if (value == 3) record.fail(key, "is unknown, got " + printable(name));
+  if (value == 3) {
+    std::vector<std::string> names;
+    for (int k = 0; k < 3; ++k)  // one of two names what is none as the first
+      if (std::ranges::find(names, name_of(Enum(k))) == names.end())
+        names.emplace_back(name_of(Enum(k)));
+    record.fail(key, "must be one of " + joined(names) + did_you_mean(name, names) + ", got " +
+                         printable(name));
+  }
   return Enum(value);
 }
+
+/// Whether powers of a number are finite.
+bool is_finite(const nlohmann::json& value) { return std::abs(value.get<double>()) <= 1e30; }
 
 Vec<Gcrs> vector_of(const JsonRecord& record, const char* key) {
   const auto v = record.numbers<3>(key);
@@ -44,11 +58,53 @@ Vec<Gcrs> vector_of(const JsonRecord& record, const char* key) {
 }  // namespace
 
 JsonRecord::JsonRecord(const std::string& text, std::string place)
-    : JsonRecord(nlohmann::json::parse(text, nullptr, false), std::move(place)) {}
+    : JsonRecord(
+          std::make_shared<const nlohmann::json>(nlohmann::json::parse(text, nullptr, false)),
+          std::move(place)) {}
 
-JsonRecord::JsonRecord(nlohmann::json object, std::string place)
+JsonRecord::JsonRecord(std::shared_ptr<const nlohmann::json> object, std::string place)
     : object_(std::move(object)), place_(std::move(place)) {
-  if (!object_.is_object()) throw ConfigError(place_ + ": must be a JSON object");
+  if (!object_->is_object()) throw ConfigError(place_ + ": must be a JSON object");
+}
+
+JsonRecord JsonRecord::part(const nlohmann::json& value, const std::string& key) const {
+  return {{object_, &value}, place_ + ": " + key};
+}
+
+template <class T>
+T JsonRecord::get(const char* key) const {
+  const nlohmann::json& value = at(key);
+  if constexpr (std::same_as<T, bool>) {
+    require(value.is_boolean(), key, "true or false");
+  } else if constexpr (std::integral<T>) {
+    require(value.is_number_integer() && value == nlohmann::json(value.get<T>()), key,
+            "a whole number in range");
+  } else if constexpr (std::floating_point<T>) {
+    require(value.is_number(), key, "a number");
+    require(is_finite(value), key, "at most 1e30");
+  } else {
+    require(value.is_string(), key, "a text");
+  }
+  return value.get<T>();
+}
+template bool JsonRecord::get(const char*) const;
+template int JsonRecord::get(const char*) const;
+template std::uint32_t JsonRecord::get(const char*) const;
+template std::int64_t JsonRecord::get(const char*) const;
+template std::uint64_t JsonRecord::get(const char*) const;
+template double JsonRecord::get(const char*) const;
+template std::string JsonRecord::get(const char*) const;
+
+std::vector<double> JsonRecord::numbers_of(const char* key, std::size_t count) const {
+  const nlohmann::json& list = at(key);
+  bool good = list.is_array() && list.size() == count, finite = true;
+  for (std::size_t i = 0; good && i < count; ++i) {
+    good = list[i].is_number();
+    finite = finite && good && is_finite(list[i]);
+  }
+  require(good, key, std::to_string(count) + " numbers");
+  require(finite, key, "at most 1e30");
+  return list.get<std::vector<double>>();
 }
 
 void JsonRecord::fail(const std::string& key, const std::string& reason) const {
@@ -56,13 +112,13 @@ void JsonRecord::fail(const std::string& key, const std::string& reason) const {
 }
 
 bool JsonRecord::has(const char* key) const {
-  const auto found = object_.find(key);
-  return found != object_.end() && !found->is_null();
+  const auto found = object_->find(key);
+  return found != object_->end() && !found->is_null();
 }
 
 const nlohmann::json& JsonRecord::at(const char* key) const {
-  const auto found = object_.find(key);
-  if (found == object_.end()) fail(key, "is missing");
+  const auto found = object_->find(key);
+  if (found == object_->end()) fail(key, "is missing");
   return *found;
 }
 
@@ -72,22 +128,18 @@ void JsonRecord::require(bool good, const char* key, const std::string& what) co
     fail(key, "must be " + what + ", got " + printable(at(key).dump(-1, ' ', false, as_bytes), 80));
 }
 
-bool JsonRecord::is_finite(const nlohmann::json& value) {
-  return std::abs(value.get<double>()) <= 1e30;
-}
-
-JsonRecord JsonRecord::object(const char* key) const { return {at(key), place_ + ": " + key}; }
+JsonRecord JsonRecord::object(const char* key) const { return part(at(key), key); }
 
 std::vector<JsonRecord> JsonRecord::objects(const char* key) const {
   require(at(key).is_array(), key, "a list");
   std::vector<JsonRecord> out;
-  for (const auto& value : at(key)) out.push_back({value, place_ + ": " + key});
+  for (const auto& value : at(key)) out.push_back(part(value, key));
   return out;
 }
 
 std::map<std::string, double> JsonRecord::all_numbers() const {
   std::map<std::string, double> out;
-  for (const auto& [key, value] : object_.items()) {
+  for (const auto& [key, value] : object_->items()) {
     if (value.is_null()) continue;
     require(value.is_number() && is_finite(value), key.c_str(), "a number");
     out.emplace(key, value.get<double>());
@@ -97,8 +149,7 @@ std::map<std::string, double> JsonRecord::all_numbers() const {
 
 std::vector<std::pair<std::string, JsonRecord>> JsonRecord::all_objects() const {
   std::vector<std::pair<std::string, JsonRecord>> out;
-  for (const auto& [key, value] : object_.items())
-    out.emplace_back(key, JsonRecord(value, place_ + ": " + key));
+  for (const auto& [key, value] : object_->items()) out.emplace_back(key, part(value, key));
   return out;
 }
 
@@ -205,6 +256,15 @@ Track track_of(const JsonRecord& record) {
 #define DMISE_VECTOR(field, key) t.field = vector_of(record, key);
 #define DMISE_TEXTS(field, key) t.field = record.texts(key);
   DMISE_TRACK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_TEXTS)
+#undef DMISE_PAIR
+#undef DMISE_TEXT
+#undef DMISE_WHERE
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_VECTOR
+#undef DMISE_TEXTS
   return t;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
+#include <algorithm>
 #include <array>
-#include <concepts>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,34 +25,15 @@ class JsonRecord {
   bool has(const char* key) const;  // and it is not null
   /// A number, flag or text; whole numbers must be in the range of T.
   template <class T>
-  T get(const char* key) const {
-    const nlohmann::json& value = at(key);
-    if constexpr (std::same_as<T, bool>) {
-      require(value.is_boolean(), key, "true or false");
-    } else if constexpr (std::integral<T>) {
-      require(value.is_number_integer() && value == nlohmann::json(value.get<T>()), key,
-              "a whole number in range");
-    } else if constexpr (std::floating_point<T>) {
-      require(value.is_number(), key, "a number");
-      require(is_finite(value), key, "at most 1e30");
-    } else {
-      require(value.is_string(), key, "a text");
-    }
-    return value.get<T>();
-  }
+  T get(const char* key) const;
   double number(const char* key) const { return get<double>(key); }
   SimTime time(const char* key) const { return {get<std::int64_t>(key)}; }
   template <std::size_t N>
   std::array<double, N> numbers(const char* key) const {
-    const nlohmann::json& list = at(key);
-    bool good = list.is_array() && list.size() == N, finite = true;
-    for (std::size_t i = 0; good && i < N; ++i) {
-      good = list[i].is_number();
-      finite = finite && good && is_finite(list[i]);
-    }
-    require(good, key, std::to_string(N) + " numbers");
-    require(finite, key, "at most 1e30");
-    return list.get<std::array<double, N>>();
+    const std::vector<double> list = numbers_of(key, N);
+    std::array<double, N> numbers;
+    std::ranges::copy(list, numbers.begin());
+    return numbers;
   }
   JsonRecord object(const char* key) const;
   std::vector<JsonRecord> objects(const char* key) const;
@@ -65,12 +47,13 @@ class JsonRecord {
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
 
  private:
-  JsonRecord(nlohmann::json object, std::string place);
+  JsonRecord(std::shared_ptr<const nlohmann::json> object, std::string place);
+  /// Of a value in this one.
+  JsonRecord part(const nlohmann::json& value, const std::string& key) const;
   const nlohmann::json& at(const char* key) const;
-  /// Whether powers of a number are finite.
-  static bool is_finite(const nlohmann::json& value);
+  std::vector<double> numbers_of(const char* key, std::size_t count) const;
   void require(bool good, const char* key, const std::string& what) const;
-  nlohmann::json object_;
+  std::shared_ptr<const nlohmann::json> object_;
   std::string place_;
 };
 

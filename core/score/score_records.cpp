@@ -104,15 +104,16 @@ std::string score_json(const Score& score) {
 }
 
 std::string score_csv(const Score& score) {
+  const auto label = [](const std::string& text) { return csv_field(formula_free(text)); };
   std::string text =
       "sensor,frame,fate,id,detection,pieces,clean,expected_snr,measured_snr,length_px,"
       "rate_arcsec_per_s,magnitude,x_px,y_px";
   for (const ErrorKey& error : error_keys) text += std::string(",error_") + error.key;
   text += '\n';
   for (const ScoredTruth& t : score.truths) {
-    text += csv_field(t.truth.sensor) + "," + csv_field(t.truth.frame) + "," +
-            fate_names[std::size_t(t.fate)] + "," + csv_field(t.truth.id) + "," +
-            csv_field(t.detection ? t.detection->id : "");
+    text += label(t.truth.sensor) + "," + label(t.truth.frame) + "," +
+            fate_names[std::size_t(t.fate)] + "," + label(t.truth.id) + "," +
+            label(t.detection ? t.detection->id : "");
     text += "," + std::to_string(t.pieces) + (t.clean ? ",1" : ",0");
     cell(text, t.snr);
     cell(text, t.detection ? std::optional(t.detection->snr) : std::nullopt);
@@ -127,8 +128,7 @@ std::string score_csv(const Score& score) {
   }
   for (const FoundSource& found : score.false_alarms) {
     const Detection& d = found.detection;
-    text += csv_field(found.sensor) + "," + csv_field(found.frame) + ",false,," + csv_field(d.id) +
-            ",1,0,";
+    text += label(found.sensor) + "," + label(found.frame) + ",false,," + label(d.id) + ",1,0,";
     cell(text, d.snr);
     cell(text, d.length_px);
     const auto known = [&](const char* key, double value) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/frame_report.h"
 #include "core/products/task.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
@@ -70,6 +71,7 @@ inline bool is_retained(const State& state) { return std::holds_alternative<Obje
 // Topics. A sensor's own topics are `prefix + sensor name`.
 inline constexpr const char* roster_topic = "state/roster";    // at tick 0
 inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states
+inline constexpr const char* actor_prefix = "state/actor/";    // states of a node's own objects
 inline constexpr const char* environment_topic = "env/common";
 inline constexpr const char* site_prefix = "env/site/";  // the atmosphere above a ground sensor
 inline constexpr const char* frame_prefix = "frame/";

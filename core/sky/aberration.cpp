@@ -5,8 +5,21 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+ErrorBound AnnualAberration::error(int, const PlanFacts& f) {
+  return f.shifted_stars(f.stars > 0.0 ? f.annual_aberration_rad : 0.0);
+}
+
+double AnnualAberration::cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.stars; }
+
+ErrorBound DiurnalAberration::error(int, const PlanFacts& f) {
+  return f.shifted_by(f.diurnal_aberration_rad);
+}
+
+double DiurnalAberration::cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.stars; }
 
 Aberration::Aberration(const Vec<Gcrs>& velocity_c, double sun_distance_au)
     : velocity_c_(velocity_c),

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/observer.h"
 
 namespace dmise {
@@ -23,10 +23,8 @@ struct AnnualAberration {
   static constexpr EffectFacts facts{"annual_aberration", "the Earth's motion displaces stars",
                                      "up to 20.5 arcsec", "IAU SOFA, eraAb"};
   static constexpr bool displaces_satellites = false;
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.shifted_stars(f.stars > 0.0 ? f.annual_aberration_rad : 0.0);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit AnnualAberration(const Observer& observer);
   Vec<Gcrs> velocity_c;
@@ -38,10 +36,8 @@ struct DiurnalAberration {
       "diurnal_aberration", "the observer's geocentric motion displaces everything",
       "0.32 arcsec on the ground, 5.2 in a low orbit", "IAU SOFA, eraAb"};
   static constexpr bool displaces_satellites = true;
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.shifted_by(f.diurnal_aberration_rad);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit DiurnalAberration(const Observer& observer);
   Vec<Gcrs> velocity_c;

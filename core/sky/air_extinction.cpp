@@ -2,11 +2,18 @@
 
 #include <vector>
 
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
 #include "core/sky/kept_tables.h"
 
 namespace dmise {
+
+ErrorBound AirExtinction::error(int, const PlanFacts& f) {
+  return f.dimmed_by(1.1 * f.zenith_extinction_mag * f.most_airmass);
+}
+
+double AirExtinction::cost_s(int level, const PlanFacts& f) { return level * 82e-9 * f.stars; }
 
 AirExtinction::AirExtinction(const AirExposure& exposure) : up_(exposure.up) {
   static KeptTables<std::pair<Band, Curve>, BandExtinction> tables;

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/air_exposure.h"
 #include "core/sky/extinction.h"
 
@@ -15,10 +15,8 @@ class AirExtinction {
       "Kasten & Young 1989, Applied Optics 28, 4735"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
 
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.dimmed_by(1.1 * f.zenith_extinction_mag * f.most_airmass);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 82e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit AirExtinction(const AirExposure& exposure);
   /// Share of a source's light in the band that arrives, (0, 1].

@@ -4,11 +4,16 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
+
+ErrorBound Airglow::error(int, const PlanFacts& f) { return f.without_part(SkyPart::airglow); }
+
+double Airglow::cost_s(int level, const PlanFacts& f) { return level * 75e-9 * f.sky_looks(); }
 
 double van_rhijn(double sin_altitude, double layer_height_m) {
   constexpr double earth_radius_m = 6378e3;

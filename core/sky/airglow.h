@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
@@ -13,8 +13,8 @@ struct Airglow {
                                      "22.4 mag/arcsec2 at the zenith",
                                      "van Rhijn 1921, Publ. Astr. Lab. Groningen 31"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
-  static ErrorBound error(int, const PlanFacts& f) { return f.without_part(SkyPart::airglow); }
-  static double cost_s(int level, const PlanFacts& f) { return level * 75e-9 * f.sky_looks(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   double zenith_v_mag_per_arcsec2 = 22.4;  // at the ground; 21.9 to 22.6 over the solar cycle
   double layer_height_m = 90e3;

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -23,6 +24,12 @@ constexpr double no_sun_au = 1e9;
 }
 
 }  // namespace
+
+ErrorBound Parallax::error(int, const PlanFacts& f) { return f.shifted_stars(f.star_parallax_rad); }
+
+double Parallax::cost_s(int level, const PlanFacts& f) { return level * 2e-9 * f.stars; }
+
+ErrorBound LightTime::error(int, const PlanFacts& f) { return f.shifted_objects(f.light_time_rad); }
 
 ApparentPlaces::ApparentPlaces(const Observer& observer, const EffectSet& effects)
     : observer_m_(observer.position_m),

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/observer.h"
 
 namespace dmise {
@@ -15,22 +15,8 @@ class AtmosphericRefraction {
 
   /// Without it the sky is evaluated in a direction that is off by the refraction: its parts change
   /// with direction, most near the Moon and in twilight.
-  static ErrorBound error(int, const PlanFacts& f) {
-    constexpr double usual_per_rad = 3.0, steep_per_rad = 10.0;
-    // Moonlight by the Moon's elevation: 0.9 mag a degree below the horizon, above it by
-    // extinction.
-    constexpr double moon_down_per_rad = 48.0, moon_up_per_rad = 4.0;
-    const double moonlight_per_rad = std::max(steep_per_rad, 2.0 / f.nearest_moon_rad);
-    const double moon =
-        f.moon_refraction_rad * (f.moon_is_down ? moon_down_per_rad : moon_up_per_rad);
-    return f.shifted_by(f.refraction_rad) + f.without_light([&](const SkySample& s) {
-      const double moonlight_e = f.moonlight_e(s), twilight_e = s.of(SkyPart::twilight);
-      const double rest_e = s.sky_e - twilight_e - s.of(SkyPart::scattered_moonlight);
-      return f.refraction_rad * (usual_per_rad * rest_e + steep_per_rad * twilight_e) +
-             std::min(1.0, moon + f.refraction_rad * moonlight_per_rad) * moonlight_e;
-    });
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 430e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit AtmosphericRefraction(const Observer& observer) : air_(*observer.air) {}
   /// Takes and returns unit vectors; `distance_m` along the straight line, `Refraction::star` of

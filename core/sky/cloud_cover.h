@@ -1,7 +1,8 @@
 #pragma once
 #include <memory>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/accuracy.h"
+#include "core/effects/effects.h"
 #include "core/sky/air_exposure.h"
 
 namespace dmise {
@@ -15,7 +16,7 @@ class CloudCover {
   static bool applies(const SceneFacts& scene) { return scene.on_ground && scene.clouds; }
 
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  static double cost_s(int level, const PlanFacts& f) { return level * 300e-9 * f.stars; }
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit CloudCover(const AirExposure& exposure);
   /// Share of a source's light that comes through, [0, 1].

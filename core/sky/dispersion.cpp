@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/star_spectrum.h"
 #include "core/sky/colour_airmass.h"
@@ -14,8 +15,8 @@ namespace dmise {
 namespace {
 
 constexpr int edges = BandDispersion::most_cells + 1;
-constexpr int colours = 25, airmasses = 17;  // every 0.1 of B-V
-constexpr ColourAirmassNodes nodes{colours, airmasses};
+constexpr int dispersion_colours = 25, dispersion_airmasses = 17;  // every 0.1 of B-V
+constexpr ColourAirmassNodes dispersion_nodes{dispersion_colours, dispersion_airmasses};
 
 struct Lit {
   double blue_m, red_m;
@@ -38,6 +39,16 @@ Refraction refraction_at(const Refraction& air, double wavelength_m) {
 }
 
 }  // namespace
+
+ErrorBound Dispersion::error(int level, const PlanFacts& f) {
+  const double cell_rad = cell_px[std::size_t(level)] * f.pixel_rad;
+  return f.shifted_by(level == 0 ? f.dispersion_rad : 0.5 * std::min(cell_rad, f.dispersion_rad));
+}
+
+double Dispersion::cost_s(int level, const PlanFacts& f) {
+  if (level == 0) return 0.0;
+  return (2e-6 + 0.4e-6 * cells(level, f.dispersion_rad / f.pixel_rad)) * f.stars;
+}
 
 BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   const Lit lit = lit_part(band);
@@ -76,17 +87,17 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   // A loss common to all wavelengths changes nothing: it is left out, so that some light remains at
   // the horizon.
   const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
-  std::vector<double> transmission(steps.size() * airmasses);
-  for (int a = 0; a < airmasses; ++a)
+  std::vector<double> transmission(steps.size() * dispersion_airmasses);
+  for (int a = 0; a < dispersion_airmasses; ++a)
     for (std::size_t s = 0; s < steps.size(); ++s)
       transmission[a * steps.size() + s] =
-          light_of_magnitude((k_mag[s] - least_k) * nodes.airmass(a));
-  sums_.reserve(std::size_t(colours * airmasses * edges * 2));
-  for (int c = 0; c < colours; ++c) {
-    const StarSpectrum star = star_spectrum(nodes.bv(c));
+          light_of_magnitude((k_mag[s] - least_k) * dispersion_nodes.airmass(a));
+  sums_.reserve(std::size_t(dispersion_colours * dispersion_airmasses * edges * 2));
+  for (int c = 0; c < dispersion_colours; ++c) {
+    const StarSpectrum star = star_spectrum(dispersion_nodes.bv(c));
     for (std::size_t s = 0; s < steps.size(); ++s)
       photons[s] = steps[s].weight * star.photons_at(steps[s].wavelength_m);
-    for (int a = 0; a < airmasses; ++a) {
+    for (int a = 0; a < dispersion_airmasses; ++a) {
       std::array<double, edges> light{}, moment{};
       for (std::size_t s = 0; s < steps.size(); ++s) {
         const double through = photons[s] * transmission[a * steps.size() + s];
@@ -108,10 +119,11 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
 
 void BandDispersion::add_cells(double airmass, double bv, int count,
                                std::vector<SpectrumCell>& cells) const {
-  const auto place = nodes.place(airmass, bv);
+  const auto place = dispersion_nodes.place(airmass, bv);
   const auto sum = [&](int edge, int which) {
-    return nodes.between(place, [&](int colour, int node) {
-      return sums_[std::size_t(((colour * airmasses + node) * edges + edge) * 2 + which)];
+    return dispersion_nodes.between(place, [&](int colour, int node) {
+      return sums_[std::size_t(((colour * dispersion_airmasses + node) * edges + edge) * 2 +
+                               which)];
     });
   };
   double light = 0.0, moment = 0.0;

@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/accuracy.h"
+#include "core/effects/effects.h"
 #include "core/frames/vec.h"
 #include "core/photometry/band.h"
 #include "core/sky/refraction.h"
@@ -57,14 +58,8 @@ class Dispersion {
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
 
   /// Light is displaced by up to half of a cell, or by the whole spectrum without the effect.
-  static ErrorBound error(int level, const PlanFacts& f) {
-    const double cell_rad = cell_px[std::size_t(level)] * f.pixel_rad;
-    return f.shifted_by(level == 0 ? f.dispersion_rad : 0.5 * std::min(cell_rad, f.dispersion_rad));
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    if (level == 0) return 0.0;
-    return (2e-6 + 0.4e-6 * cells(level, f.dispersion_rad / f.pixel_rad)) * f.stars;
-  }
+  static ErrorBound error(int level, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   /// Number of cells into which a level cuts a spectrum of this length.
   static int cells(int level, double length_px);

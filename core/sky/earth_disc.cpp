@@ -3,9 +3,16 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 
 namespace dmise {
+
+ErrorBound EarthDisc::error(int, const PlanFacts& f) {
+  return f.scene.earth_in_field ? not_bounded : ErrorBound{};
+}
+
+double EarthDisc::cost_s(int level, const PlanFacts& f) { return level * 200e-9 * f.pixels(); }
 
 EarthRadiance::EarthRadiance(const Band& band, const Vec<Gcrs>& from_m, const Vec<Gcrs>& sun_m,
                              const OblateEarth& earth, double albedo)

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/frames/oblate_earth.h"
 #include "core/photometry/band.h"
 
@@ -11,10 +11,8 @@ struct EarthDisc {
                                      "the lit Earth, where a camera in space has it in the field",
                                      "a dark Earth", "a diffuse ellipsoid (Lambert)"};
   static bool applies(const SceneFacts& scene) { return scene.earth_in_field; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.scene.earth_in_field ? not_bounded : ErrorBound{};
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 200e-9 * f.pixels(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Of clouds, seas and air together: the Earth's Bond albedo (Stephens et al. 2015, Rev. Geophys.

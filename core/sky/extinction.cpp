@@ -21,21 +21,21 @@ struct Sample {
 };
 #include "core/sky/extinction_tables.inc"
 
-struct Site {
+struct SiteExtinction {
   std::string_view name;
   std::span<const Sample> samples;
 };
-constexpr Site sites[] = {{"lick", lick},           {"ctio", ctio},
-                          {"kitt_peak", kitt_peak}, {"la_palma", la_palma},
-                          {"mauna_kea", mauna_kea}, {"paranal", paranal}};
+constexpr SiteExtinction sites[] = {{"lick", lick},           {"ctio", ctio},
+                                    {"kitt_peak", kitt_peak}, {"la_palma", la_palma},
+                                    {"mauna_kea", mauna_kea}, {"paranal", paranal}};
 
-constexpr int colours = 49;  // every 0.05 of B-V, as spectra of stars are tabulated
-constexpr int airmasses = 33;
-constexpr ColourAirmassNodes nodes{colours, airmasses};
+constexpr int bv_nodes = 49;  // every 0.05 of B-V, as spectra of stars are tabulated
+constexpr int airmass_nodes = 33;
+constexpr ColourAirmassNodes extinction_nodes{bv_nodes, airmass_nodes};
 }  // namespace
 
 std::optional<Curve> extinction_of_site(std::string_view name) {
-  for (const Site& site : sites) {
+  for (const SiteExtinction& site : sites) {
     if (site.name != name) continue;
     Curve curve;
     for (const Sample& sample : site.samples) {
@@ -48,7 +48,7 @@ std::optional<Curve> extinction_of_site(std::string_view name) {
 
 std::vector<std::string> extinction_site_names() {
   std::vector<std::string> names;
-  for (const Site& site : sites) names.emplace_back(site.name);
+  for (const SiteExtinction& site : sites) names.emplace_back(site.name);
   return names;
 }
 
@@ -88,21 +88,23 @@ BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per
   // The band is narrow against the change of extinction: sums over even steps of wavelength.
   constexpr int steps = 128;
   const double step_m = (band.high_m() - band.low_m()) / steps;
-  std::vector<double> response(steps), x_m(steps), photons(steps), transmission(steps * airmasses);
+  std::vector<double> response(steps), x_m(steps), photons(steps),
+      transmission(steps * airmass_nodes);
   for (int s = 0; s < steps; ++s) {
     x_m[s] = band.low_m() + (s + 0.5) * step_m;
     response[s] = band.response.at_or_zero(x_m[s]);
     const double k = extinction_mag_per_airmass.at_or_end(x_m[s]);
     // Held above 0 in the thickest ultraviolet, so that the logarithm stays finite.
-    for (int a = 0; a < airmasses; ++a)
-      transmission[a * steps + s] = std::max(light_of_magnitude(k * nodes.airmass(a)), 1e-30);
+    for (int a = 0; a < airmass_nodes; ++a)
+      transmission[a * steps + s] =
+          std::max(light_of_magnitude(k * extinction_nodes.airmass(a)), 1e-30);
   }
-  log_of_transmission_.reserve(colours * airmasses);
-  for (int c = 0; c < colours; ++c) {
-    const StarSpectrum star = star_spectrum(nodes.bv(c));
+  log_of_transmission_.reserve(bv_nodes * airmass_nodes);
+  for (int c = 0; c < bv_nodes; ++c) {
+    const StarSpectrum star = star_spectrum(extinction_nodes.bv(c));
     double above = 0.0;
     for (int s = 0; s < steps; ++s) above += photons[s] = response[s] * star.photons_at(x_m[s]);
-    for (int a = 0; a < airmasses; ++a) {
+    for (int a = 0; a < airmass_nodes; ++a) {
       double through = 0.0;
       for (int s = 0; s < steps; ++s) through += photons[s] * transmission[a * steps + s];
       log_of_transmission_.push_back(std::log(through / above));
@@ -111,8 +113,8 @@ BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per
 }
 
 double BandExtinction::log_of_star(double airmass, double bv) const {
-  return nodes.between(nodes.place(airmass, bv), [&](int colour, int node) {
-    return log_of_transmission_[std::size_t(colour * airmasses + node)];
+  return extinction_nodes.between(extinction_nodes.place(airmass, bv), [&](int colour, int node) {
+    return log_of_transmission_[std::size_t(colour * airmass_nodes + node)];
   });
 }
 

@@ -4,9 +4,18 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/star_counts.h"
 
 namespace dmise {
+
+ErrorBound FaintStarlight::error(int, const PlanFacts& f) {
+  return f.without_part(SkyPart::faint_starlight);
+}
+
+double FaintStarlight::cost_s(int level, const PlanFacts& f) {
+  return level * 120e-9 * f.sky_looks();
+}
 
 double faint_starlight_s10(const FaintStarlight& starlight, double sin_galactic_latitude) {
   constexpr double plane_s10 = 165.0, optical_depth = 0.13, counted_to_v_mag = 9.0;

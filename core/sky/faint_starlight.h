@@ -1,5 +1,6 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/accuracy.h"
+#include "core/effects/effects.h"
 #include "core/sky/sky_frames.h"
 
 namespace dmise {
@@ -15,10 +16,8 @@ struct FaintStarlight {
   static constexpr EffectFacts facts{"faint_starlight", "stars below the catalogue's limit",
                                      "22.2 to 24.5 mag/arcsec2",
                                      "Leinert et al. 1998, A&AS 127, 1, section 10"};
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_part(SkyPart::faint_starlight);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 120e-9 * f.sky_looks(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   double brighter_limit_v_mag = 9.0;  // stars brighter than this are drawn one by one
   bool by_counts = false;             // the rest is by `StarCounts`

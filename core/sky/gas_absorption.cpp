@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/star_spectrum.h"
 #include "core/sky/airmass.h"
@@ -30,6 +31,10 @@ void check(double value, double most, const char* name) {
 }
 
 }  // namespace
+
+ErrorBound GasAbsorption::error(int, const PlanFacts& f) { return f.dimmed_by(1.1 * f.gas_mag); }
+
+double GasAbsorption::cost_s(int level, const PlanFacts& f) { return level * 82e-9 * f.stars; }
 
 Curve gas_transmission(const AirGases& air, double airmass) {
   check(air.pwv_mm, 100.0, "pwv_mm");

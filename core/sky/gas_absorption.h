@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/air_exposure.h"
 #include "core/sky/air_gases.h"
 
@@ -29,8 +29,8 @@ class GasAbsorption {
       "0.02 to 0.2 mag in I, J, H and K; all of the light at 1.4 and 1.9 um",
       "Bird & Riordan 1986, J. Climate Appl. Meteor. 25, 87"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground && scene.gases; }
-  static ErrorBound error(int, const PlanFacts& f) { return f.dimmed_by(1.1 * f.gas_mag); }
-  static double cost_s(int level, const PlanFacts& f) { return level * 82e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit GasAbsorption(const AirExposure& exposure);
   /// Share of a source's light in the band that arrives, (0, 1].

@@ -3,8 +3,16 @@
 #include <erfa.h>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
+
+ErrorBound LightDeflection::error(int, const PlanFacts& f) {
+  const double half_rad = 0.5 * std::max(f.nearest_sun_rad, 4.65e-3);
+  return f.shifted_stars(f.stars > 0.0 ? 1.98e-8 / std::tan(half_rad) : 0.0);
+}
+
+double LightDeflection::cost_s(int level, const PlanFacts& f) { return level * 116e-9 * f.stars; }
 
 LightDeflection::LightDeflection(const Observer& observer) {
   const Vec<Gcrs> from_sun_m = observer.position_m - observer.solar_system.sun_m;

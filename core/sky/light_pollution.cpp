@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
 #include "core/sky/surface_brightness.h"
@@ -40,6 +41,14 @@ Spectrum spectrum_of(std::span<const Line> lines) {
 }
 
 }  // namespace
+
+ErrorBound LightPollution::error(int, const PlanFacts& f) {
+  return f.without_part(SkyPart::light_pollution);
+}
+
+double LightPollution::cost_s(int level, const PlanFacts& f) {
+  return level * 20e-9 * f.sky_looks();
+}
 
 Spectrum lamp_spectrum(const LampMix& lamps) {
   const double shares[] = {lamps.lps, lamps.hps, lamps.led};

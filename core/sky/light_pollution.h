@@ -1,6 +1,6 @@
 #pragma once
 #include <vector>
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 
 #include "core/frames/vec.h"
 #include "core/photometry/spectrum.h"
@@ -28,10 +28,8 @@ struct LightPollution {
                                      "18 mag/arcsec2 in a city",
                                      "a zenith brightness and its rise to the horizon"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_part(SkyPart::light_pollution);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 20e-9 * f.sky_looks(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   double zenith_v_mag_per_arcsec2 = 18.0;  // of the even part alone
   LampMix lamps;

@@ -1,6 +1,6 @@
 #pragma once
 #include "core/base/units.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/frames/vec.h"
 
 namespace dmise {
@@ -14,7 +14,7 @@ struct LightTime {
   // It has no cost, so that no plan leaves it out where it displaces something: alike in every
   // frame along an object's path, which tracks do not average out as they do other errors. It takes
   // a microsecond for each object.
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_objects(f.light_time_rad); }
+  static ErrorBound error(int, const PlanFacts& f);
 
   /// `line_m(dt_s)`: from the observer now to the object at now + dt_s. Returns the line along
   /// which its light comes [m] and sets `light_time_s`.

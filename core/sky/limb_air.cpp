@@ -8,6 +8,7 @@
 
 #include "core/base/table_place.h"
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/kept_tables.h"
 #include "core/sky/standard_air.h"
 #include "core/sky/sunlit_air.h"
@@ -15,8 +16,8 @@
 namespace dmise {
 namespace {
 
-constexpr double earth_radius_m = AirColumns::earth_radius_m;
-constexpr float darkest = -200.0f;  // of logarithms
+constexpr double limb_earth_radius_m = AirColumns::earth_radius_m;
+constexpr float darkest_air_log = -200.0f;  // of logarithms
 
 // Nodes of the table of scattered light.
 constexpr std::size_t tangent_nodes = 71;  // every 1 km to 40, 2.3 km above
@@ -64,16 +65,16 @@ struct Sight {
   double nearest_m, piece_m;
   std::vector<Place> places;
 
-  explicit Sight(double tangent_height_m) : nearest_m(earth_radius_m + tangent_height_m) {
+  explicit Sight(double tangent_height_m) : nearest_m(limb_earth_radius_m + tangent_height_m) {
     const auto& columns = AirColumns::standard();
     const double top_m = AirColumns::top_m;
-    const double farthest_m =
-        std::sqrt((top_m - tangent_height_m) * (top_m + tangent_height_m + 2 * earth_radius_m));
+    const double farthest_m = std::sqrt((top_m - tangent_height_m) *
+                                        (top_m + tangent_height_m + 2 * limb_earth_radius_m));
     piece_m = 2.0 * farthest_m / pieces;
     AirColumn before, last;
     for (int i = 0; i < pieces; ++i) {
       const double s = -farthest_m + (i + 0.5) * piece_m;
-      const double height_m = std::hypot(nearest_m, s) - earth_radius_m;
+      const double height_m = std::hypot(nearest_m, s) - limb_earth_radius_m;
       const double air_m = relative_density(height_m) * piece_m;
       const AirColumn here{air_m / columns.column_m(), ozone_density(height_m) * piece_m};
       before.air += 0.5 * (last.air + here.air);
@@ -89,7 +90,7 @@ struct Sight {
     const double up = std::cos(sun_zenith_rad), ahead = std::sin(sun_zenith_rad) * towards_sun;
     double light = 0.0;
     for (const Place& place : places) {
-      const double r = earth_radius_m + place.level.height_m;
+      const double r = limb_earth_radius_m + place.level.height_m;
       const double to_sun_m = nearest_m * up + place.along_m * ahead;
       const double cosine = std::clamp(to_sun_m / r, -1.0, 1.0);
       double lit = 1.0;
@@ -101,7 +102,7 @@ struct Sight {
         const double passes_m = r * std::sqrt(1.0 - cosine * cosine);
         const double changes_m =
             std::abs(place.along_m - to_sun_m * ahead) / std::max(passes_m, 1.0) * piece_m;
-        const double lowest_m = passes_m - earth_radius_m;
+        const double lowest_m = passes_m - limb_earth_radius_m;
         lit = std::clamp(0.5 + lowest_m / std::max(changes_m, 1.0), 0.0, 1.0);
         if (lit == 0.0) continue;
         column = columns.downwards(place.level, cosine, std::max(0.0, lowest_m));
@@ -114,6 +115,14 @@ struct Sight {
 };
 
 }  // namespace
+
+ErrorBound LimbAir::error(int, const PlanFacts& f) {
+  return f.without_light([&](const SkySample&) { return f.limb_air_e; });
+}
+
+double LimbAir::cost_s(int level, const PlanFacts& f) {
+  return f.scene.limb_in_field ? level * 120e-9 * f.pixels() : 0.0;
+}
 
 struct LimbAirTable::Nodes {
   ScatteredSunlight sunlight;
@@ -135,7 +144,7 @@ struct LimbAirTable::Nodes {
       for (std::size_t k = 0; k < tangent_nodes; ++k) {
         const double light =
             sights[k].scattered(sunlight, sun_nodes_deg[sun] * deg, towards_sun_of_node(azimuth));
-        here[k] = light > 0.0 ? std::max(darkest, float(std::log(light))) : darkest;
+        here[k] = light > 0.0 ? std::max(darkest_air_log, float(std::log(light))) : darkest_air_log;
       }
     });
     return here.data();
@@ -165,7 +174,7 @@ double LimbAirTable::scattered(const LimbSun& at) const {
   const double log =
       std::lerp(std::lerp(of(z.node, a.node), of(z.node, a.node + 1), a.part),
                 std::lerp(of(z.node + 1, a.node), of(z.node + 1, a.node + 1), a.part), z.part);
-  return log > 0.5 * double(darkest) ? std::exp(log) : 0.0;
+  return log > 0.5 * double(darkest_air_log) ? std::exp(log) : 0.0;
 }
 
 LimbAirRadiance::LimbAirRadiance(const Band& band, const Vec<Gcrs>& sun_m, const OblateEarth& earth)

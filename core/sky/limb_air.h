@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/band.h"
 #include "core/sky/limb_line.h"
 
@@ -13,12 +13,8 @@ struct LimbAir {
       "limb_air", "sunlit air over the Earth's limb, seen from space", "a sharp limb without air",
       "single scattering; Hansen & Travis 1974, Space Sci. Rev. 16, 527"};
   static bool applies(const SceneFacts& scene) { return scene.limb_in_field; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_light([&](const SkySample&) { return f.limb_air_e; });
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    return f.scene.limb_in_field ? level * 120e-9 * f.pixels() : 0.0;
-  }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Geometry of a line of sight that passes over the ground: the Sun at its lowest place.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/sky/surface_brightness.h"
@@ -80,6 +81,14 @@ double whole_m(const AirglowShells::Shell& shell) {
 }
 
 }  // namespace
+
+ErrorBound LimbAirglow::error(int, const PlanFacts& f) {
+  return f.without_light([&](const SkySample&) { return f.limb_airglow_e; });
+}
+
+double LimbAirglow::cost_s(int level, const PlanFacts& f) {
+  return f.scene.limb_in_field ? level * 130e-9 * f.pixels() : 0.0;
+}
 
 AirglowShells::AirglowShells(const Airglow& airglow, const Band& band) {
   const double by_sun = airglow_by_solar_flux(airglow.solar_flux_sfu);

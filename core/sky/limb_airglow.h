@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/band.h"
 #include "core/sky/airglow.h"
 #include "core/sky/limb_line.h"
@@ -16,12 +16,8 @@ struct LimbAirglow {
       "no airglow: 17.9 mag/arcsec2 in V at its brightest",
       "van Rhijn 1921; Baker & Stair 1988, Phys. Scr. 37, 611; Mende et al. 1993, JGR 98, 19117"};
   static bool applies(const SceneFacts& scene) { return scene.limb_in_field; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_light([&](const SkySample&) { return f.limb_airglow_e; });
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    return f.scene.limb_in_field ? level * 130e-9 * f.pixels() : 0.0;
-  }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Airglow in a band as a sum of shells, each of which shines at height h by (1 - x^2)^2, x = (h -

@@ -2,7 +2,7 @@
 #include <limits>
 #include <memory>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/band.h"
 #include "core/sky/limb_line.h"
 
@@ -22,12 +22,8 @@ class LimbExtinction {
       "1.8 mag at a tangent height of 20 km, 3 mag at 10 km in V",
       "International Standard Atmosphere; Hansen & Travis 1974; Bird & Riordan 1986"};
   static bool applies(const SceneFacts& scene) { return scene.limb_in_field; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.scene.limb_in_field ? not_bounded : ErrorBound{};
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    return f.scene.limb_in_field ? level * 100e-9 * (f.stars + f.sky_looks()) : 0.0;
-  }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
   /// From this tangent height on nothing is lost.
   static constexpr double top_m = 100e3;
 

@@ -4,11 +4,18 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/scattered_moonlight.h"
 #include "core/sky/sky_model.h"
 
 namespace dmise {
+
+ErrorBound MoonDisc::error(int, const PlanFacts& f) {
+  return f.scene.moon_in_field ? not_bounded : ErrorBound{};
+}
+
+double MoonDisc::cost_s(int level, const PlanFacts& f) { return level * 400e-9 * f.pixels(); }
 
 double lommel_seeliger_phase(double phase_rad) {
   const double a = std::clamp(std::abs(phase_rad), 0.0, pi);

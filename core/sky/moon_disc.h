@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/frames/vec.h"
 #include "core/photometry/band.h"
 
@@ -13,10 +13,8 @@ struct MoonDisc {
                                      "Lommel and Seeliger's law (Seeliger 1887), with the "
                                      "magnitude of Krisciunas & Schaefer 1991"};
   static bool applies(const SceneFacts& scene) { return scene.moon_in_field; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.scene.moon_in_field ? not_bounded : ErrorBound{};
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 400e-9 * f.pixels(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 inline constexpr double moon_radius_m = 1737.4e3;  // IAU mean radius

@@ -1,6 +1,14 @@
 #include "core/sky/occultation.h"
 
+#include "core/effects/plan_facts.h"
+
 namespace dmise {
+
+ErrorBound EarthOccultation::error(int, const PlanFacts& f) {
+  return f.sees_horizon ? not_bounded : ErrorBound{};
+}
+
+double EarthOccultation::cost_s(int level, const PlanFacts& f) { return level * 3e-9 * f.stars; }
 
 FreeSight::FreeSight(const Vec<Gcrs>& from_m, const OblateEarth& earth)
     : earth_(earth),

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/frames/oblate_earth.h"
 
 namespace dmise {
@@ -38,10 +38,8 @@ class EarthOccultation {
                                      "objects and stars behind it are drawn",
                                      "line of sight and ellipsoid"};
 
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.sees_horizon ? not_bounded : ErrorBound{};
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 3e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   /// `up`: unit, the normal of the ellipsoid at a ground sensor. `sight`: of one in orbit.
   EarthOccultation(const Vec<Gcrs>& up, const std::optional<FreeSight>& sight)

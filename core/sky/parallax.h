@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/observer.h"
 #include "core/sky/star_place.h"
 #include "core/sky/star_place_kernels.h"
@@ -12,8 +12,8 @@ class Parallax {
   static constexpr EffectFacts facts{"parallax", "stars seen from the Earth's place on its orbit",
                                      "up to 0.77 arcsec", "IAU SOFA, eraPmpx"};
 
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_stars(f.star_parallax_rad); }
-  static double cost_s(int level, const PlanFacts& f) { return level * 2e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit Parallax(const Observer& observer) : barycentric_au_(barycentric_au(observer)) {}
   /// `place`: of the star, in units of its distance.

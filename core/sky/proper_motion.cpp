@@ -1,6 +1,7 @@
 #include "core/sky/proper_motion.h"
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {
@@ -9,6 +10,12 @@ constexpr double julian_year_s = 365.25 * day_s;
 constexpr double light_years_per_au = au_m / speed_of_light_m_per_s / julian_year_s;
 
 }  // namespace
+
+ErrorBound ProperMotion::error(int, const PlanFacts& f) {
+  return f.shifted_stars(f.star_shift_rad);
+}
+
+double ProperMotion::cost_s(int level, const PlanFacts& f) { return level * 18e-9 * f.stars; }
 
 ProperMotion::ProperMotion(const Observer& observer)
     : barycentric_au_(barycentric_au(observer)),

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/observer.h"
 #include "core/sky/star_place.h"
 #include "core/sky/star_place_kernels.h"
@@ -13,8 +13,8 @@ class ProperMotion {
       "proper_motion", "stars move from their catalogue's epoch to the date",
       "up to 10.4 arcsec a year (Barnard's star)", "IAU SOFA, eraPmpx"};
 
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_stars(f.star_shift_rad); }
-  static double cost_s(int level, const PlanFacts& f) { return level * 18e-9 * f.stars; }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit ProperMotion(const Observer& observer);
   /// `place`: of the star, in units of its distance.

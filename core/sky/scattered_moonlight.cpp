@@ -4,11 +4,20 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
+
+ErrorBound ScatteredMoonlight::error(int, const PlanFacts& f) {
+  return f.without_part(SkyPart::scattered_moonlight);
+}
+
+double ScatteredMoonlight::cost_s(int level, const PlanFacts& f) {
+  return level * 245e-9 * f.sky_looks();
+}
 
 double moon_v_mag(double phase_rad) {
   const double phase_deg = std::abs(phase_rad) / deg;

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
@@ -10,10 +10,8 @@ struct ScatteredMoonlight {
                                      "up to 18 mag/arcsec2 at full Moon",
                                      "Krisciunas & Schaefer 1991, PASP 103, 1033"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_part(SkyPart::scattered_moonlight);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 245e-9 * f.sky_looks(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   double factor = 1.0;  // for hazier air than that of the source
 };

@@ -7,6 +7,7 @@
 #include "core/base/rng_at.h"
 #include "core/base/table_place.h"
 #include "core/base/vector_math.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/airmass.h"
 #include "core/sky/kept_tables.h"
 
@@ -16,6 +17,22 @@ namespace {
 constexpr double pattern_m_per_s = 20.0;  // of the shadows over the aperture
 
 }  // namespace
+
+ErrorBound MovingScintillation::error(int, const PlanFacts& f) {
+  return f.dimmed_by(1.086 * 4.0 * f.scintillation);
+}
+
+double MovingScintillation::cost_s(int level, const PlanFacts& f) {
+  return level * 60e-9 * (f.stars + double(f.objects));
+}
+
+ErrorBound Scintillation::error(int, const PlanFacts& f) {
+  return f.dimmed_by(1.086 * 4.0 * f.scintillation);
+}
+
+double Scintillation::cost_s(int level, const PlanFacts& f) {
+  return level * 181e-9 * (f.stars + double(f.objects));
+}
 
 double scintillation_sigma(double aperture_m, double exposure_s, double airmass,
                            double site_height_m) {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/base/rng.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/sky/air_exposure.h"
 
 namespace dmise {
@@ -39,12 +39,8 @@ struct MovingScintillation {
       "sources that move by 0.3 deg a second scintillate 2 times too much",
       "Kenyon et al. 2006, PASP 118, 924; Dravins et al. 1998, PASP 110, 610", false};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.dimmed_by(1.086 * 4.0 * f.scintillation);
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    return level * 60e-9 * (f.stars + double(f.objects));
-  }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 /// Turbulence makes the light of point sources scintillate: in each frame a factor of mean 1,
@@ -57,12 +53,8 @@ class Scintillation {
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
 
   /// Four deviations: one source in 16,000 is beyond.
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.dimmed_by(1.086 * 4.0 * f.scintillation);
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    return level * 181e-9 * (f.stars + double(f.objects));
-  }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   explicit Scintillation(const AirExposure& exposure);
   double apply(const SightLine& line) const;

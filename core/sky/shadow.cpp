@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/kept_tables.h"
 #include "core/sky/sun_disc.h"
 
@@ -25,6 +26,16 @@ Vec<Gcrs> across(const Vec<Gcrs>& v, const Vec<Gcrs>& towards) {
 }
 
 }  // namespace
+
+ErrorBound EarthShadow::error(int level, const PlanFacts& f) {
+  const bool lacks = level == 0 ? f.near_shadow || f.near_shadow_of_air : f.near_shadow_of_air;
+  return lacks ? not_bounded : ErrorBound{};
+}
+
+double EarthShadow::cost_s(int level, const PlanFacts& f) {
+  constexpr std::array<double, 4> object_s{0.0, 2e-6, 10e-6, 30e-6};
+  return object_s[std::size_t(level)] * double(f.objects);
+}
 
 EarthShadow::EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth)
     : sun_m_(sun_m), towards_sun_(unit(sun_m)), earth_(earth) {}

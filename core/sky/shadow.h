@@ -2,7 +2,7 @@
 #include <array>
 #include <span>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/frames/oblate_earth.h"
 #include "core/sky/grazing_air.h"
 
@@ -28,14 +28,8 @@ class EarthShadow {
       levels,
       1};
 
-  static ErrorBound error(int level, const PlanFacts& f) {
-    const bool lacks = level == 0 ? f.near_shadow || f.near_shadow_of_air : f.near_shadow_of_air;
-    return lacks ? not_bounded : ErrorBound{};
-  }
-  static double cost_s(int level, const PlanFacts& f) {
-    constexpr std::array<double, 4> object_s{0.0, 2e-6, 10e-6, 30e-6};
-    return object_s[std::size_t(level)] * double(f.objects);
-  }
+  static ErrorBound error(int level, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   /// `sun_m`: geocentric position of the Sun.
   EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth);

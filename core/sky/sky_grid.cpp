@@ -35,6 +35,38 @@ double at(const std::array<double, 4>& c, double t) {
   return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 
+/// A surface of u and v in [0, 1] between the middle ones of 4 x 4 nodes.
+class Bicubic {
+ public:
+  /// `node(k, l)`: k and l from -1 to 2.
+  template <class Node>
+  explicit Bicubic(const Node& node) {
+    for (int k = 0; k < 4; ++k)
+      columns_[std::size_t(k)] =
+          cubic(node(k - 1, -1), node(k - 1, 0), node(k - 1, 1), node(k - 1, 2));
+  }
+
+  /// The cubic of u at a v.
+  std::array<double, 4> along_u(double v) const {
+    return cubic(at(columns_[0], v), at(columns_[1], v), at(columns_[2], v), at(columns_[3], v));
+  }
+
+  /// Those of u^a v^b at 4 b + a.
+  std::array<float, 16> coefficients() const {
+    std::array<float, 16> out{};
+    for (std::size_t b = 0; b < 4; ++b) {
+      const auto c = cubic(columns_[0][b], columns_[1][b], columns_[2][b], columns_[3][b]);
+      for (std::size_t a = 0; a < 4; ++a) out[4 * b + a] = float(c[a]);
+    }
+    return out;
+  }
+
+ private:
+  std::array<std::array<double, 4>, 4> columns_;  // polynomials of v
+};
+
+constexpr int parts = 4;  // of a cell that its nodes do not describe
+
 /// The nodes of the coarse grid.
 struct Grid {
   int columns, rows;
@@ -78,12 +110,14 @@ struct Grid {
     return std::abs(guess - exact) <= 0.5 * tolerance * std::abs(exact);
   }
 
-  /// No edge near the nodes of this cell, by fourth differences: a jump in slope makes them large,
-  /// and bicubic values wrong by up to 0.4 of them.
+  /// No edge near the middle one of five nodes, by fourth differences: a jump in slope makes them
+  /// large, and bicubic values wrong by up to 0.4 of them.
+  bool calm(double a, double b, double c, double d, double e) const {
+    return 0.4 * std::abs(a - 4 * b + 6 * c - 4 * d + e) <= tolerance * std::abs(c);
+  }
+
+  /// No edge near the nodes of this cell.
   bool smooth(int i, int j) const {
-    const auto calm = [&](double a, double b, double c, double d, double e) {
-      return 0.4 * std::abs(a - 4 * b + 6 * c - 4 * d + e) <= tolerance * std::abs(c);
-    };
     for (int q = j; q <= j + 1; ++q)
       for (int p = i; p <= i + 1; ++p) {
         if (p >= 1 && p < across.cells &&
@@ -110,38 +144,101 @@ struct Piece {
 
   void fill_cell(int i, int j) {
     const Axis &across = grid.across, &down = grid.down;
-    const auto column = [&](int k) {
-      return cubic(grid.node(k, j - 1), grid.node(k, j), grid.node(k, j + 1), grid.node(k, j + 2));
-    };
-    const auto row_at = [&](int k, double v) { return at(column(k), v); };
-    const auto cubic_at = [&](double v) {
-      return cubic(row_at(i - 1, v), row_at(i, v), row_at(i + 1, v), row_at(i + 2, v));
-    };
+    const Bicubic surface([&](int k, int l) { return grid.node(i + k, j + l); });
     const int x0 = across.first[i], x1 = across.first[i + 1];
     const int y0 = down.first[j], y1 = down.first[j + 1];
     const double middle = evaluate(std::min((i + 0.5) * across.width, grid.columns - 1.0),
                                    std::min((j + 0.5) * down.width, grid.rows - 1.0));
-    if (!grid.agrees(at(cubic_at(0.5), 0.5), middle) || !grid.smooth(i, j)) {
-      const double a = evaluate(x0, y0), b = evaluate(x1 - 1, y0);
-      refine(x0, y0, x1 - 1, y1 - 1, a, b, evaluate(x0, y1 - 1), evaluate(x1 - 1, y1 - 1));
+    if (!grid.agrees(at(surface.along_u(0.5), 0.5), middle) || !grid.smooth(i, j)) {
+      if (std::min(across.width, down.width) >= 4.0 * parts)
+        fill_finer(i, j);
+      else
+        refine(x0, y0, x1, y1);
       return;
     }
-    const float t0 = float(x0 / across.width - i), dt = float(1.0 / across.width);
+    put(surface, x0, y0, x1, y1, {across.width, i}, {down.width, j});
+  }
+
+  /// A cell by nodes `parts` times as dense. Those beyond the frame continue the ones in it.
+  void fill_finer(int i, int j) {
+    constexpr int nodes = parts + 3;  // one beyond each side
+    const Axis &across = grid.across, &down = grid.down;
+    std::array<std::array<double, nodes>, nodes> value;  // by row, column
+    const auto is_in = [](const Axis& axis, int cell, int k) {
+      return !(cell == 0 && k < 0) && !(cell == axis.cells - 1 && k > parts);
+    };
+    const auto node = [&](int k, int l) -> double& {
+      return value[std::size_t(l + 1)][std::size_t(k + 1)];
+    };
+    for (int l = -1; l <= parts + 1; ++l) {
+      if (!is_in(down, j, l)) continue;
+      for (int k = -1; k <= parts + 1; ++k)
+        if (is_in(across, i, k))
+          node(k, l) =
+              evaluate(std::min((i + double(k) / parts) * across.width, grid.columns - 1.0),
+                       std::min((j + double(l) / parts) * down.width, grid.rows - 1.0));
+      if (!is_in(across, i, -1)) node(-1, l) = Grid::beyond(2, node(0, l), node(1, l), node(2, l));
+      if (!is_in(across, i, parts + 1))
+        node(parts + 1, l) =
+            Grid::beyond(2, node(parts, l), node(parts - 1, l), node(parts - 2, l));
+    }
+    for (int k = -1; k <= parts + 1; ++k) {
+      if (!is_in(down, j, -1)) node(k, -1) = Grid::beyond(2, node(k, 0), node(k, 1), node(k, 2));
+      if (!is_in(down, j, parts + 1))
+        node(k, parts + 1) =
+            Grid::beyond(2, node(k, parts), node(k, parts - 1), node(k, parts - 2));
+    }
+    const auto calm = [&](int k, int l) {  // at a node between others
+      return (k < 1 || k >= parts ||
+              grid.calm(node(k - 2, l), node(k - 1, l), node(k, l), node(k + 1, l),
+                        node(k + 2, l))) &&
+             (l < 1 || l >= parts ||
+              grid.calm(node(k, l - 2), node(k, l - 1), node(k, l), node(k, l + 1),
+                        node(k, l + 2)));
+    };
+    const auto first = [](const Axis& axis, int cell, int part) {
+      return part == parts ? axis.first[std::size_t(cell + 1)]
+                           : int(std::ceil((cell + double(part) / parts) * axis.width - 1e-9));
+    };
+    for (int b = 0; b < parts; ++b)
+      for (int a = 0; a < parts; ++a) {
+        const Bicubic surface([&](int k, int l) { return node(a + k, b + l); });
+        const int x0 = first(across, i, a), x1 = first(across, i, a + 1);
+        const int y0 = first(down, j, b), y1 = first(down, j, b + 1);
+        const double middle =
+            evaluate(std::min((i + (a + 0.5) / parts) * across.width, grid.columns - 1.0),
+                     std::min((j + (b + 0.5) / parts) * down.width, grid.rows - 1.0));
+        if (grid.agrees(at(surface.along_u(0.5), 0.5), middle) && calm(a, b) && calm(a + 1, b) &&
+            calm(a, b + 1) && calm(a + 1, b + 1))
+          put(surface, x0, y0, x1, y1, {across.width, i, parts, a}, {down.width, j, parts, b});
+        else
+          refine(x0, y0, x1, y1);
+      }
+  }
+
+  /// Where pixels are in a part of a cell along one axis, in units of the part.
+  struct Parameter {
+    double width;
+    int cell, parts = 1, part = 0;
+
+    double at(int pixel) const { return parts * (pixel / width - cell) - part; }
+    double a_pixel() const { return parts / width; }
+  };
+
+  /// The pixels from x0 to before x1, y0 to before y1 from a surface.
+  void put(const Bicubic& surface, int x0, int y0, int x1, int y1, const Parameter& u,
+           const Parameter& v) {
+    const float t0 = float(u.at(x0)), dt = float(u.a_pixel());
     if (!grid.out) {
       SkyPatch patch{.x0 = x0, .y0 = y0, .x1 = x1 - 1, .y1 = y1 - 1, .u0 = t0, .du = dt};
-      patch.v0 = float(y0 / down.width - j);
-      patch.dv = float(1.0 / down.width);
-      std::array<std::array<double, 4>, 4> columns;  // polynomials of v
-      for (int k = 0; k < 4; ++k) columns[k] = column(i - 1 + k);
-      for (std::size_t b = 0; b < 4; ++b) {
-        const auto c = cubic(columns[0][b], columns[1][b], columns[2][b], columns[3][b]);
-        for (std::size_t a = 0; a < 4; ++a) patch.coefficient[4 * b + a] = float(c[a]);
-      }
+      patch.v0 = float(v.at(y0));
+      patch.dv = float(v.a_pixel());
+      patch.coefficient = surface.coefficients();
       patches.push_back(patch);
       return;
     }
     for (int y = y0; y < y1; ++y) {
-      const auto c = cubic_at(y / down.width - j);
+      const auto c = surface.along_u(v.at(y));
       const float c0 = float(c[0]), c1 = float(c[1]), c2 = float(c[2]), c3 = float(c[3]);
       float* to = grid.out + std::size_t(y) * std::size_t(grid.columns) + x0;
       for (int k = 0; k < x1 - x0; ++k) {
@@ -149,6 +246,12 @@ struct Piece {
         to[k] = c0 + t * (c1 + t * (c2 + t * c3));
       }
     }
+  }
+
+  /// The pixels from x0 to before x1, y0 to before y1.
+  void refine(int x0, int y0, int x1, int y1) {
+    const double a = evaluate(x0, y0), b = evaluate(x1 - 1, y0);
+    refine(x0, y0, x1 - 1, y1 - 1, a, b, evaluate(x0, y1 - 1), evaluate(x1 - 1, y1 - 1));
   }
 
   /// The pixels x0..x1, y0..y1 (inclusive) from the function's values at their corners, or from

@@ -5,7 +5,8 @@
 #include <optional>
 #include <string_view>
 
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
+#include "core/effects/sky_part.h"
 #include "core/frames/vec.h"
 #include "core/sky/air_gases.h"
 #include "core/sky/airglow.h"

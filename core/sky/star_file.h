@@ -26,7 +26,8 @@ inline constexpr std::uint32_t first_deep_star_id = 1'000'000;
 // One reader per format. To add one: write it beside the others, list it here and in star_file.cpp,
 // test it in tests/sky/test_star_file.cpp.
 
-/// stars.dat of Debian's kstars-data: fixed columns, places and motions of J2000.0.
+/// KStars' stars.dat, and launch/catalogues/stars.dat.gz: fixed columns, places and motions of
+/// J2000.0.
 StarReading parse_kstars(std::string_view text, const std::string& name);
 /// HYG database: CSV, columns by the names in their header.
 StarReading parse_hyg(std::string_view text, const std::string& name);

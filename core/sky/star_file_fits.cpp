@@ -16,9 +16,10 @@ namespace {
 /// A FITS file in memory.
 class FitsTable {
  public:
-  FitsTable(std::string_view bytes, const std::string& name) : name_(name), size_(bytes.size()) {
-    require_bytes(bytes, require_harmless_headers(bytes, name), name);
-    bytes_ = const_cast<char*>(bytes.data());  // it is opened for reading
+  FitsTable(std::string_view bytes, const std::string& name)
+      : name_(name), harmless_(bytes, name), size_(harmless_.bytes().size()) {
+    require_bytes(harmless_.bytes(), harmless_.asked(), name);
+    bytes_ = const_cast<char*>(harmless_.bytes().data());  // it is opened for reading
     fits_open_memfile(&file_, "stars", READONLY, &bytes_, &size_, 0, nullptr, &status_);
     check("no FITS file");
     int units = 0;
@@ -84,6 +85,7 @@ class FitsTable {
   }
 
   const std::string& name_;
+  HarmlessFits harmless_;
   void* bytes_ = nullptr;
   std::size_t size_;
   fitsfile* file_ = nullptr;

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// What moves stars between a catalogue and an observer: years from the catalogue's epoch, and the
@@ -21,9 +23,7 @@ struct StarArrays {
   /* Moves stars that are not at a pole; `count` is a multiple of 8. */                       \
   void move_stars(const CatalogueMotion& motion, const StarArrays& stars, std::size_t count); \
   }
-DMISE_STAR_PLACE_KERNELS(sse2)
-DMISE_STAR_PLACE_KERNELS(avx2)
-DMISE_STAR_PLACE_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_STAR_PLACE_KERNELS)
 #undef DMISE_STAR_PLACE_KERNELS
 
 }  // namespace dmise

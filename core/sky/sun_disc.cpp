@@ -4,9 +4,16 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 
 namespace dmise {
+
+ErrorBound SunDisc::error(int, const PlanFacts& f) {
+  return f.scene.sun_in_field ? not_bounded : ErrorBound{};
+}
+
+double SunDisc::cost_s(int level, const PlanFacts& f) { return level * 400e-9 * f.pixels(); }
 
 double sun_limb_exponent(double wavelength_m) {
   return std::max(0.0, -0.023 + 0.292e-6 / wavelength_m);

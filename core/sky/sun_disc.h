@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/band.h"
 
 namespace dmise {
@@ -10,10 +10,8 @@ struct SunDisc {
                                      "no Sun in the field",
                                      "Hestroffer & Magnan 1998, A&A 333, 338"};
   static bool applies(const SceneFacts& scene) { return scene.sun_in_field; }
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.scene.sun_in_field ? not_bounded : ErrorBound{};
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 400e-9 * f.pixels(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 };
 
 inline constexpr double sun_radius_m = 695.7e6;  // IAU 2015 Resolution B3

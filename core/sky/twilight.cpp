@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
 #include "core/sky/surface_brightness.h"
@@ -50,6 +51,10 @@ double zenith_mag_per_arcsec2(double depression_deg) {
 }
 
 }  // namespace
+
+ErrorBound Twilight::error(int, const PlanFacts& f) { return f.without_part(SkyPart::twilight); }
+
+double Twilight::cost_s(int level, const PlanFacts& f) { return level * 175e-9 * f.sky_looks(); }
 
 double twilight_zenith_s10(double sun_altitude_rad) {
   return s10_of_mag_per_arcsec2(zenith_mag_per_arcsec2(-sun_altitude_rad / deg));

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
@@ -11,8 +11,8 @@ struct Twilight {
       "18 mag/arcsec2 with the Sun 10 deg down",
       "Patat et al. 2006, A&A 455, 385; Schaefer 1993, Vistas in Astronomy 36, 311"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
-  static ErrorBound error(int, const PlanFacts& f) { return f.without_part(SkyPart::twilight); }
-  static double cost_s(int level, const PlanFacts& f) { return level * 175e-9 * f.sky_looks(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   double factor = 1.0;
 };

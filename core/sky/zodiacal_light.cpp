@@ -7,6 +7,7 @@
 
 #include "core/base/table_place.h"
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
@@ -33,6 +34,14 @@ std::array<int, 37> nodes_every_5_deg(const double (&axis)[N]) {
 }
 
 }  // namespace
+
+ErrorBound ZodiacalLight::error(int, const PlanFacts& f) {
+  return f.without_part(SkyPart::zodiacal_light);
+}
+
+double ZodiacalLight::cost_s(int level, const PlanFacts& f) {
+  return level * 250e-9 * f.sky_looks();
+}
 
 double zodiacal_light_s10(double longitude_from_sun_rad, double latitude_rad) {
   static const auto row_at = nodes_every_5_deg(longitude_deg);

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/plan_facts.h"
+#include "core/effects/effects.h"
 #include "core/photometry/band.h"
 
 namespace dmise {
@@ -11,10 +11,8 @@ struct ZodiacalLight {
       "zodiacal_light", "sunlight scattered by dust between the planets",
       "23.3 mag/arcsec2 at the ecliptic poles, 22 and brighter near the ecliptic",
       "Leinert et al. 1998, A&AS 127, 1, table 17"};
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_part(SkyPart::zodiacal_light);
-  }
-  static double cost_s(int level, const PlanFacts& f) { return level * 250e-9 * f.sky_looks(); }
+  static ErrorBound error(int, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f);
 
   double factor = 1.0;  // on the table
 };

@@ -7,7 +7,7 @@ namespace dmise {
 
 namespace {
 
-using Result = Outcome<std::vector<OrbitState>>;
+using Orbits = Outcome<std::vector<OrbitState>>;
 
 /// The three lines, and the determinants of Curtis, Orbital Mechanics for Engineering Students,
 /// algorithm 5.5.
@@ -122,7 +122,7 @@ bool improve(Lines lines, double distance_m, OrbitState& state) {
 
 Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> three,
                                              const OrbitLimits& limits) {
-  if (const auto fault = fault_of_three(three); !fault.empty()) return Result::refused(fault);
+  if (const auto fault = fault_of_three(three); !fault.empty()) return Orbits::refused(fault);
   const Lines lines(three);
   const double sines = norm(cross(three[0].direction, three[1].direction)) *
                        norm(cross(three[1].direction, three[2].direction));
@@ -130,7 +130,7 @@ Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> t
   const double sigma = largest_sigma_rad(three);
   const double widest = angle_rad(three[0].direction, three[2].direction);
   if (!(std::fabs(lines.d0) > std::max(1e-14, 3 * sigma * std::min(widest, sines / widest))))
-    return Result::refused("the three lines of sight lie in one plane: ranges are not determined");
+    return Orbits::refused("the three lines of sight lie in one plane: ranges are not determined");
   std::vector<OrbitState> out;
   for (const double distance_m : distances(lines, lines.light_left_s[0], lines.light_left_s[2])) {
     OrbitState state;
@@ -139,7 +139,7 @@ Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> t
     state.time = three[1].time - sim_seconds(range_m / speed_of_light_m_per_s);
     if (within(limits, state)) add_distinct(out, state);
   }
-  if (out.empty()) return Result::refused("no orbit near the Earth passes through the three lines");
+  if (out.empty()) return Orbits::refused("no orbit near the Earth passes through the three lines");
   return out;
 }
 

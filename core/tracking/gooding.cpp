@@ -9,7 +9,7 @@ namespace dmise {
 
 namespace {
 
-using Result = Outcome<std::vector<OrbitState>>;
+using Orbits = Outcome<std::vector<OrbitState>>;
 
 /// By how much Lambert's path between the outer lines misses the middle line.
 class Problem {
@@ -121,11 +121,11 @@ constexpr std::array default_ranges_m{3e5, 6e5, 1e6, 1.6e6, 2.5e6, 4e6, 8e6, 1.6
 
 Outcome<std::vector<OrbitState>> gooding_orbit(std::span<const AngleObservation> three,
                                                const GoodingSettings& settings) {
-  if (const auto fault = fault_of_three(three); !fault.empty()) return Result::refused(fault);
+  if (const auto fault = fault_of_three(three); !fault.empty()) return Orbits::refused(fault);
   std::vector<double> ranges = settings.ranges_m;
   if (ranges.empty()) ranges.assign(default_ranges_m.begin(), default_ranges_m.end());
   for (const double range : ranges)
-    if (!(range > 0 && range < 1e12)) return Result::refused("a guessed range is not above 0");
+    if (!(range > 0 && range < 1e12)) return Orbits::refused("a guessed range is not above 0");
   const double sigma_rad = largest_sigma_rad(three);
   bool undetermined = false;
   std::vector<OrbitState> out;
@@ -153,8 +153,8 @@ Outcome<std::vector<OrbitState>> gooding_orbit(std::span<const AngleObservation>
     }
   }
   if (out.empty() && undetermined)
-    return Result::refused("the three lines of sight do not determine ranges");
-  if (out.empty()) return Result::refused("no orbit near the Earth passes through the three lines");
+    return Orbits::refused("the three lines of sight do not determine ranges");
+  if (out.empty()) return Orbits::refused("no orbit near the Earth passes through the three lines");
   return out;
 }
 

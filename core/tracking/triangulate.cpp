@@ -15,7 +15,7 @@ namespace dmise {
 
 namespace {
 
-using Result = Outcome<TriangulatedPosition>;
+using Meeting = Outcome<TriangulatedPosition>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -52,15 +52,15 @@ Eigen::Matrix3d velocity_weight(const Eigen::Vector3d& position_m) {
 }
 
 /// Normal equations of position and velocity at the common time.
-struct Normal {
+struct MeetingNormal {
   Matrix6 matrix = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
   double chi2 = 0;
 };
 
-Normal normal_of(std::span<const AngleObservation> lines, SimTime middle, double light_s,
-                 const Eigen::Vector3d& r, const Eigen::Vector3d& v) {
-  Normal out;
+MeetingNormal meeting_normal(std::span<const AngleObservation> lines, SimTime middle,
+                             double light_s, const Eigen::Vector3d& r, const Eigen::Vector3d& v) {
+  MeetingNormal out;
   const double r2 = r.squaredNorm();
   const Eigen::Vector3d pull = -earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * r;
   for (const AngleObservation& seen : lines) {
@@ -96,27 +96,27 @@ double tail(double chi2, int degrees) {
 Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> lines,
                                           const Vec<Gcrs>& velocity_m_per_s,
                                           const TriangulationSettings& settings) {
-  if (lines.size() < 2) return Result::refused("fewer than two lines of sight");
+  if (lines.size() < 2) return Meeting::refused("fewer than two lines of sight");
   SimTime first = lines[0].time, last = first;
   for (const AngleObservation& line : lines) {
-    if (const auto fault = fault_of(line); !fault.empty()) return Result::refused(fault);
+    if (const auto fault = fault_of(line); !fault.empty()) return Meeting::refused(fault);
     first = std::min(first, line.time);
     last = std::max(last, line.time);
   }
   if ((last - first).seconds() > settings.longest_s)
-    return Result::refused("the lines of sight are too far apart in time");
+    return Meeting::refused("the lines of sight are too far apart in time");
   TriangulatedPosition out;
   out.angle_rad = widest_angle(lines);
   if (!(out.angle_rad >= settings.least_angle_rad))
-    return Result::refused("the lines of sight are nearly parallel");
+    return Meeting::refused("the lines of sight are nearly parallel");
 
   const Eigen::Vector3d start = nearest_point(lines);
-  if (!start.allFinite()) return Result::refused("the lines of sight do not meet");
+  if (!start.allFinite()) return Meeting::refused("the lines of sight do not meet");
   const SimTime middle{first.ns + (last.ns - first.ns) / 2};
   double range_m = 0;
   for (const AngleObservation& line : lines) {
     const double along = (start - eigen_of(line.sensor_m)).dot(eigen_of(line.direction));
-    if (!(along > 0)) return Result::refused("the lines of sight meet behind a sensor");
+    if (!(along > 0)) return Meeting::refused("the lines of sight meet behind a sensor");
     range_m += along / double(lines.size());
   }
   const double light_s = range_m / speed_of_light_m_per_s;
@@ -126,10 +126,10 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
     return r.allFinite() && r.norm() >= settings.least_distance_m &&
            r.norm() <= settings.largest_distance_m;
   };
-  if (!in_range()) return Result::refused("the lines of sight meet at no height of an orbit");
+  if (!in_range()) return Meeting::refused("the lines of sight meet at no height of an orbit");
   Matrix6 covariance = Matrix6::Zero();
   for (int i = 0; i < 20; ++i) {
-    Normal normal = normal_of(lines, middle, light_s, r, v);
+    MeetingNormal normal = meeting_normal(lines, middle, light_s, r, v);
     const Eigen::Vector3d before = r;
     if (known) {
       const Eigen::LDLT<Eigen::Matrix3d> root(normal.matrix.topLeftCorner<3, 3>());
@@ -146,24 +146,24 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
       v += change.tail<3>();
       covariance = scale.asDiagonal() * root.solve(Matrix6::Identity()) * scale.asDiagonal();
     }
-    if (!in_range()) return Result::refused("the lines of sight meet at no height of an orbit");
+    if (!in_range()) return Meeting::refused("the lines of sight meet at no height of an orbit");
     if ((r - before).norm() < 1e-6 * std::sqrt(covariance.topLeftCorner<3, 3>().trace()) + 1e-6)
       break;
   }
-  const Normal end = normal_of(lines, middle, light_s, r, v);
+  const MeetingNormal end = meeting_normal(lines, middle, light_s, r, v);
   out.chi2 = end.chi2;
   if (!known) out.chi2 += (v.transpose() * velocity_weight(r) * v).value();
   for (const AngleObservation& line : lines)
     if (!((r - eigen_of(line.sensor_m)).dot(eigen_of(line.direction)) > 0))
-      return Result::refused("the lines of sight meet behind a sensor");
+      return Meeting::refused("the lines of sight meet behind a sensor");
   out.time = middle - sim_seconds(light_s);
   out.position_m = gcrs_of(r);
   out.covariance_m2 = covariance.topLeftCorner<3, 3>();
   out.degrees_of_freedom = 2 * int(lines.size()) - 3;
   if (!out.covariance_m2.allFinite() || !(out.covariance_m2.diagonal().array() > 0).all())
-    return Result::refused("the lines of sight do not determine a position");
+    return Meeting::refused("the lines of sight do not determine a position");
   if (tail(end.chi2, out.degrees_of_freedom) < settings.least_probability)
-    return Result::refused("the lines of sight miss each other");
+    return Meeting::refused("the lines of sight miss each other");
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/units.h"
 #include "core/tracking/initial_orbit.h"
 #include "core/tracking/lambert.h"
 
@@ -8,7 +9,7 @@ namespace dmise {
 
 namespace {
 
-using Result = Outcome<BatchFit>;
+using Fit = Outcome<BatchFit>;
 
 /// Longest part of a turn between the two places that Lambert's path joins.
 constexpr double longest_turn = 0.3;
@@ -59,27 +60,27 @@ Outcome<BatchFit> two_site_orbit(const ForceModel& forces,
                                  const BatchSettings& batch) {
   std::vector<AngleObservation> sorted(observations.begin(), observations.end());
   for (const AngleObservation& o : sorted)
-    if (const auto fault = fault_of(o); !fault.empty()) return Result::refused(fault);
+    if (const auto fault = fault_of(o); !fault.empty()) return Fit::refused(fault);
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.time < b.time; });
   std::string_view reason;
   const auto positions = positions_of(sorted, triangulation, reason);
-  if (positions.empty()) return Result::refused(reason);
+  if (positions.empty()) return Fit::refused(reason);
   const TriangulatedPosition& first = positions.front();
   const TriangulatedPosition* second = nullptr;
   for (const TriangulatedPosition& p : positions)
     if ((p.time - first.time).seconds() <= longest_turn * turn_s(first.position_m)) second = &p;
   if (second == &first) {
     if (positions.size() == 1)
-      return Result::refused("two sites saw it together only once: its velocity is not known");
-    return Result::refused("the times at which two sites saw it are too far apart");
+      return Fit::refused("two sites saw it together only once: its velocity is not known");
+    return Fit::refused("the times at which two sites saw it are too far apart");
   }
   // Less than half a turn: the path turns the short way.
   LambertSettings lamberts;
   lamberts.normal = cross(first.position_m, second->position_m);
   const auto paths = lambert(first.position_m, second->position_m,
                              (second->time - first.time).seconds(), lamberts);
-  if (!paths) return Result::refused(paths.reason);
+  if (!paths) return Fit::refused(paths.reason);
   OrbitState start{first.time, first.position_m, paths->front().start_velocity_m_per_s};
   // The arc between both positions first, then all.
   std::vector<AngleObservation> between;

@@ -59,7 +59,7 @@ def main():
     with tempfile.TemporaryDirectory() as directory:
         work = pathlib.Path(directory)
         text = ("simulation: {start: 2018-01-21T01:15:00Z, duration_s: 110, tick_s: 10, seed: 2}\n"
-                "stars: {catalogue: kstars}\nobjects: [{catalogue: gpredict}]\n"
+                "stars: {catalogue: kstars}\nobjects: [{catalogue: demo}]\n"
                 "output: {png: false}\nsensors:\n")
         for name, more in PANELS.items():
             text += SENSOR.format(name=name, columns=COLUMNS, rows=ROWS,

@@ -49,7 +49,7 @@ def frame(folder, name):
     light = fits.getdata(folder / name / "frame-000001-sources.fits").astype(float)
     lines = (folder / name / "cost.jsonl").read_text().splitlines()
     effects = [json.loads(line)["effects_s"] for line in lines]
-    return light, min(e["stars"] + e["objects"] + e["psf"] for e in effects)
+    return light, min(sum(e.get(effect, 0.0) for effect in ("stars", "objects", "psf")) for e in effects)
 
 
 with tempfile.TemporaryDirectory() as temporary:

@@ -1,7 +1,8 @@
-# Sourced by ./dmise: installs Debian packages, takes catalogues out of others, fetches Python packages.
+# Sourced by ./dmise: installs packages of the release, fetches Python and Node packages.
 # Uses `lists` and `build` (directories), `log` (a file), `say` and `die`.
 
-names_in() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@"; }
+os_release=/etc/os-release
+names_in() { awk '{ sub(/#.*/, "") } NF && $1 !~ /^--hash/ { print $1 }' "$@"; }
 digest_of() { sha256sum "$1" 2>/dev/null | cut -d ' ' -f 1; }
 
 as_root() {
@@ -43,7 +44,7 @@ show_progress() {
 
 why_apt_failed() {
   if grep -qE 'Could not (resolve|connect)|Temporary failure|Failed to fetch|Connection failed' "$log"; then
-    die "cannot reach the Debian mirrors: is there a network? (log: $log)"
+    die "cannot reach the mirrors of packages: is there a network? (log: $log)"
   fi
   die "apt-get failed: $(grep '^E:' "$log" | tail -n 1) (log: $log)"
 }
@@ -54,13 +55,44 @@ missing_packages() {
     <(printf '%s\n' "$@" | sort -u)
 }
 
-# install_packages LIST..: files of package names. Does nothing, needs nothing when all are there.
+# The release of this system, as releases.txt calls it: debian-12.
+release() { (. "$os_release" && echo "${ID-linux}-${VERSION_ID-rolling}"); }
+
+# packages_in LIST..: what lists name, as this release calls it. Fails on a release that releases.txt does not know.
+packages_in() {
+  names_in "$@" | awk -v release="$(release)" '
+    NR == FNR && /^#/ { next }
+    NR == FNR && !column { for (i = 1; i <= NF; ++i) if ($i == release) column = i
+                           if (!column) exit 1; next }
+    NR == FNR { called[$1] = $column; next }
+    { print $1 in called ? called[$1] : $1 }' "$lists/releases.txt" -
+}
+
+# absent_in LIST..: those packages of lists whose command or header is not on this system, whatever it calls them.
+absent_in() {
+  local name probe
+  sed 's/#.*//' "$@" | while read -r name probe; do
+    case $probe in
+      '') ;;
+      */* | *.h | *.hpp) c++ -x c++ -E - <<<"#include <$probe>" >/dev/null 2>&1 || echo "$name" ;;
+      *) command -v "$probe" >/dev/null || echo "$name" ;;
+    esac
+  done
+}
+
+refuse_release() {
+  local known absent
+  known=$(grep -m 1 '^[^#]' "$lists/releases.txt" | sed 's/  */, /g')
+  mapfile -t absent < <(absent_in "$@")
+  die "$(release): the set-up knows $known; missing here, as Debian calls it: ${absent[*]:-nothing} (with all of it DMISE_NO_SETUP=1 goes on)"
+}
+
+# install_packages LIST..: files of package names. Does nothing, needs nothing when all are there or DMISE_NO_SETUP says so.
 install_packages() {
   local wanted missing
-  command -v apt-get >/dev/null && command -v dpkg-query >/dev/null ||
-    die "no apt-get: the set-up is for Debian 12; elsewhere install what $lists names and use cmake"
-  mapfile -t wanted < <(names_in "$@")
-  mapfile -t missing < <(missing_packages "${wanted[@]}")
+  [[ ${DMISE_NO_SETUP:-0} != 1 ]] || return 0
+  wanted=$(packages_in "$@") || refuse_release "$@"
+  mapfile -t missing < <(missing_packages $wanted)
   ((${#missing[@]})) || return 0
   need_root "install ${missing[*]}"
   say "installing ${#missing[@]} packages (log: $log): ${missing[*]}"
@@ -71,7 +103,7 @@ install_packages() {
 # install_without_starting LIST..: as install_packages, of packages that have services.
 install_without_starting() (
   policy=/usr/sbin/policy-rc.d
-  [[ -n $(missing_packages $(names_in "$@")) ]] || exit 0
+  [[ ${DMISE_NO_SETUP:-0} != 1 && -n $(missing_packages $(packages_in "$@")) ]] || exit 0
   need_root "install $(names_in "$@" | tr '\n' ' ')"
   if [[ ! -e $policy ]]; then
     trap 'as_root rm -f "$policy"' EXIT
@@ -90,33 +122,11 @@ download_package() {
   apt_get update >/dev/null && (cd "$2" && "${download[@]}" >>"$log" 2>&1)
 }
 
-# Takes what catalogues.txt names, and the copyright files of the packages, into build/data.
-fetch_catalogues() {
-  local name package path tested found work
-  mkdir -p "$build/data"
-  while read -r name package path tested <&3; do
-    found=$(digest_of "$build/data/$name" || true)
-    [[ -z $found || ($found != "$tested" && $found != "$(cat "$build/data/$name.sha256" || true)") ]] ||
-      continue
-    say "fetching $name from Debian's $package"
-    work=$(mktemp -d "$build/fetch.XXXXXX")
-    download_package "$package" "$work" || { rm -rf "$work"; why_apt_failed; }
-    dpkg-deb --fsys-tarfile "$work"/*.deb |
-      tar -x -C "$work" "./$path" "./usr/share/doc/$package/copyright" ||
-      { rm -rf "$work"; die "Debian's $package does not hold $path"; }
-    cp "$work/usr/share/doc/$package/copyright" "$build/data/$name.copyright"
-    digest_of "$work/$path" >"$build/data/$name.sha256"
-    mv "$work/$path" "$build/data/$name"
-    rm -rf "$work"
-    [[ $(cat "$build/data/$name.sha256") == "$tested" ]] ||
-      say "note: $name is not Debian 12's edition; results may differ from the documented ones"
-  done 3< <(names_in "$lists/catalogues.txt")
-}
-
 # KStars' Tycho-2 into build/data, for the tests of it. Without PyPI they say so.
 fetch_deep_stars() {
   local file=$build/data/deepstars.dat wanted=136301c017094044d24b74711eeb3d693e908ec6d31c0f217a05565fb4704a00
   [[ ! -f $file ]] || return 0
+  mkdir -p "$build/data"
   say "fetching Tycho-2 (54 MB) from PyPI's fchart3"
   if "$lists/fetch-tycho2.sh" "$build/data" >>"$log" 2>&1 && [[ $(digest_of "$file") == "$wanted" ]]; then return 0; fi
   rm -f "$file"
@@ -155,18 +165,17 @@ fetch_python_packages() {
   fi
 }
 
-# What node-packages.txt names, into build/node. Debian's npm is no part of the set-up: it pulls in 400 packages.
+# What node/package.json names, into build/node, as its lock file says. Debian's npm is no part of the set-up: it pulls in 400 packages.
 fetch_node_packages() {
   local stamp=$build/node/packages.sha256 wanted
-  wanted=$(digest_of "$lists/node-packages.txt")
+  wanted=$(digest_of "$lists/node/package-lock.json")
   [[ $(cat "$stamp" 2>/dev/null || true) != "$wanted" ]] || return 0
   command -v npm >/dev/null || { say "note: there is no npm; the test of recordings in Node will say so"; return 0; }
-  say "fetching Node packages into build/node: $(names_in "$lists/node-packages.txt" | tr '\n' ' ')"
+  say "fetching Node packages into build/node"
   rm -rf "$build/node"
   mkdir -p "$build/node"
-  # shellcheck disable=SC2046
-  if npm install --prefix "$build/node" --no-save --no-audit --no-fund --loglevel error \
-    $(names_in "$lists/node-packages.txt") >>"$log" 2>&1; then
+  cp "$lists"/node/package{,-lock}.json "$build/node"
+  if npm ci --prefix "$build/node" --no-audit --no-fund --loglevel error >>"$log" 2>&1; then
     echo "$wanted" >"$stamp"
   else
     say "note: cannot fetch them; the test of recordings in Node will say so (log: $log)"

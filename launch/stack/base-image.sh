@@ -11,10 +11,10 @@ set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 image=${1:-dmise-base:bookworm}
 
-tarball=$("$here/base-system.sh")
+tarball=$("$here/base-system.sh" bookworm)
 root=$(mktemp -d -t dmise-base-XXXXXX)
 trap 'rm -rf --one-file-system "$root"' EXIT
 tar -xz -C "$root" <"$tarball"
-"$here/apt-settings.sh" "$root"
+"$here/apt-settings.sh" "$root" bookworm
 tar -c -C "$root" . | docker import --change 'CMD ["bash"]' - "$image" >/dev/null
 echo "base image: made $image"

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# A bare Debian 12 as a tarball: what debootstrap calls minimal, from the mirror in /etc/apt, without
-# manuals. Prints its path; it is kept in ${XDG_CACHE_HOME:-~/.cache}/dmise. Needs root and debootstrap.
+# base-system.sh [SUITE]: a bare Debian, by default of this machine's release, as a tarball: what debootstrap calls minimal,
+# from the mirror in /etc/apt, without manuals. Prints its path; it is kept in ${XDG_CACHE_HOME:-~/.cache}/dmise. Needs root
+# and debootstrap.
 set -euo pipefail
 
-suite=bookworm
+here=$(. /etc/os-release && echo "$VERSION_CODENAME") suite=${1:-}
+suite=${suite:-$here}
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/dmise
 tarball=$cache/$suite-system.tar.gz
 
@@ -11,7 +13,7 @@ die() { printf 'base system: %s\n' "$*" >&2; exit 1; }
 
 mirror() {
   apt-get indextargets --format '$(RELEASE) $(REPO_URI)' 'Created-By: Packages' |
-    awk -v suite="$suite" '$1 == suite { print $2; exit }'
+    awk -v suite="$here" '$1 == suite { print $2; exit }'
 }
 
 # What a bare system needs not, now and when packages come: manuals and translations; licences stay.

@@ -118,6 +118,7 @@ void HostAgentProcess::join() {
     heartbeat->MergeFrom(beats_);
   };
   link_.keep(std::move(heartbeat), std::nullopt);
+  link_.on_return([this] { repeat_reports(); });
   spdlog::debug("joined {}, listens on {}", options_.master, address_);
   announce(address_, options_.announce_file, options_.announce_fd, options_.on_bound);
 }
@@ -165,10 +166,21 @@ void HostAgentProcess::follow_topology() {
                        password);
   at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_,
                      password);
-  publisher_.send_topology(topology, publish_endpoint_, subscribe_endpoint_, security_.password());
+  send_topology();
 }
 
-void HostAgentProcess::report_to_master() {
+void HostAgentProcess::send_topology(const std::string& only) {
+  publisher_.send_topology(*link_.topology(), publish_endpoint_, subscribe_endpoint_,
+                           security_.password(), only);
+}
+
+void HostAgentProcess::repeat_reports() {
+  barrier_->repeat_news();
+  send_news();
+  for (const auto& [name, peer] : joining_) forward(peer.join);
+}
+
+void HostAgentProcess::send_news() {
   for (const HostBarrier::News& news : barrier_->take_news()) {
     v1::NodeMessage message;
     auto* wire = message.mutable_node_news();
@@ -182,6 +194,10 @@ void HostAgentProcess::report_to_master() {
     if (news.what == HostBarrier::News::What::lost && link_.phase() == v1::PHASE_GATHERING)
       barrier_->forget(news.name);
   }
+}
+
+void HostAgentProcess::report_to_master() {
+  send_news();
   if (over()) return;
   if (!said_ready_ && topology_version_ > 0 && link_.receives_ticks() && barrier_->all_ready()) {
     link_.ready();

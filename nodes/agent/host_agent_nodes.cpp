@@ -28,6 +28,10 @@ void HostAgentProcess::handle_nodes() {
       continue;
     }
     if (heard_.run_id() != link_.welcome().run_id()) continue;
+    if (heard_.has_hello()) {
+      adopt(sender);
+      continue;
+    }
     const std::string name = directory_.name_of(sender);
     if (heard_.has_heartbeat())
       heartbeat(sender, message[1]);
@@ -51,15 +55,40 @@ void HostAgentProcess::join_of(std::string_view sender, zmq::message_t& frame) {
     return publisher_.refuse(
         sender, "only nodes that keep time join an agent; join " + options_.master + " itself");
   suspect(connections_.names_of(broken_));  // whose last messages may just have been handled
+  const auto asked = joining_.find(join.name());
+  if (asked != joining_.end() &&
+      asked->second.join.SerializeAsString() == join.SerializeAsString()) {
+    asked->second.routing_id = sender;  // its connection broke before the answer
+    connections_.identify(frame, join.name());
+    return;
+  }
   if (barrier_->has_live_process(join.name()))
     return publisher_.refuse(sender, "a node named " + join.name() + " has already joined");
-  joining_[join.name()] = {std::string(sender), 0, join};
+  barrier_->give_up(join.name());
+  send_news();  // first: the master must know that the name is free
+  joining_[join.name()] = {std::string(sender), 0, join, 0, {}};
   connections_.identify(frame, join.name());
   barrier_->begin_join(join.name());
+  forward(join);
+}
+
+void HostAgentProcess::forward(const v1::Join& join) {
   v1::NodeMessage message;
   *message.mutable_join() = join;
   message.mutable_join()->set_host(options_.name);
   link_.send(std::move(message));
+}
+
+/// A node whose connection broke continues over another, over which it has proved itself.
+void HostAgentProcess::adopt(std::string_view sender) {
+  const std::string name = directory_.adopt(sender);
+  if (name.empty()) return;
+  spdlog::warn("{} has connected again", name);
+  if (topology_version_ > 0) send_topology(name);
+  publisher_.reply(sender, publisher_.grant_for(directory_.all().at(name).join));
+  v1::MasterMessage known;
+  known.mutable_endpoints()->set_run_id(link_.welcome().run_id());
+  publisher_.reply(sender, known);
 }
 
 void HostAgentProcess::done(const std::string& name) {
@@ -89,6 +118,7 @@ void HostAgentProcess::heartbeat(std::string_view sender, zmq::message_t& frame)
   if (!barrier_->nodes().contains(name))
     return publisher_.reply(sender, publisher_.expelled("the run goes on without " + name));
   connections_.identify(frame, name);
+  directory_.prove(name, sender);
   barrier_->heartbeat(name, heartbeat.computing(), heartbeat.progress(), now());
   times_[name] = heartbeat.times();
   publisher_.reply(sender, publisher_.grant_for(peer->join));
@@ -113,6 +143,7 @@ void HostAgentProcess::welcome(v1::MasterMessage answer) {
                    welcome->resume_tick(), now());
     welcome->set_tick_endpoint(tick_endpoint_);
     said_ready_ = false;
+    link_.not_ready();
     spdlog::info("{} joined{}", name,
                  welcome->incarnation() == 1
                      ? ""

@@ -30,6 +30,8 @@ class HostAgentProcess {
   void done(const std::string& name);
   void heartbeat(std::string_view sender, zmq::message_t& frame);
   void leave_of(const std::string& name);
+  void forward(const v1::Join& join);
+  void adopt(std::string_view sender);
 
   /// Relays data in both directions.
   void relay();
@@ -38,9 +40,14 @@ class HostAgentProcess {
   void apply_grant();
   void welcome(v1::MasterMessage answer);
   void follow_topology();
+  /// To all nodes of this host, or to one.
+  void send_topology(const std::string& only = "");
 
   /// Reports this host's state to the master.
   void report_to_master();
+  void send_news();
+  /// After the connection to the master broke: what may not have arrived.
+  void repeat_reports();
 
   /// Collects nodes' beats for the next heartbeat.
   void collect_beats();

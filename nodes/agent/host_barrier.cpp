@@ -103,6 +103,21 @@ void HostBarrier::fail(const std::string& name, const std::string& reason) {
   if (Node* node = active(name)) report(News::What::failed, name, *node, reason);
 }
 
+void HostBarrier::give_up(const std::string& name) {
+  Node* node = active(name);
+  if (!node || node->silent || !node->pulse.suspected) return;
+  node->silent = true;
+  report(News::What::lost, name, *node, "has closed its connection");
+}
+
+void HostBarrier::repeat_news() {
+  for (const auto& [name, node] : nodes_)
+    if (node.silent || node.left)
+      report(News::What::lost, name, node, node.left ? "left before the end" : "is silent");
+    else
+      report(News::What::found, name, node, "");
+}
+
 void HostBarrier::check(Instant now) {
   for (auto& [name, node] : nodes_) {
     if (node.left || node.silent) continue;

@@ -61,6 +61,10 @@ class HostBarrier {
   void suspect(const std::string& name, Instant now);
   void leave(const std::string& name, bool interrupted);
   void fail(const std::string& name, const std::string& reason);
+  /// Another process of its name asks to join: the earlier one, whose connection broke, is lost.
+  void give_up(const std::string& name);
+  /// Reports again which nodes are lost and which are not.
+  void repeat_news();
   /// The agent was suspended between `since` and `now` and could not receive anything.
   void excuse(Instant since, Instant now);
   /// Removes a node that was lost before the start, as if it had never joined.

@@ -71,7 +71,7 @@ v1::MasterMessage HostPublisher::expelled(const std::string& cause) const {
 
 void HostPublisher::send_topology(const v1::Topology& topology, const std::string& publish_endpoint,
                                   const std::string& subscribe_endpoint,
-                                  const std::string& password) {
+                                  const std::string& password, const std::string& only) {
   consumed_ = directory_.consumed();
   v1::MasterMessage message;
   v1::Topology& theirs = *message.mutable_topology() = topology;
@@ -84,7 +84,7 @@ void HostPublisher::send_topology(const v1::Topology& topology, const std::strin
   for (const v1::NodeStart& start : topology.starts()) {
     // Manifests from before it joined are meant for its predecessor.
     const Peer* peer = directory_.find(start.name(), start.incarnation());
-    if (!peer) continue;
+    if (!peer || (!only.empty() && start.name() != only)) continue;
     theirs.set_resume_tick(start.resume_tick());
     theirs.set_from_tick(start.from_tick());
     reply(peer->routing_id, message);

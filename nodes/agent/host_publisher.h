@@ -31,9 +31,10 @@ class HostPublisher {
   v1::MasterMessage grant_for(const v1::Join& node) const;
   /// The final message to a process that is no longer part of the run.
   v1::MasterMessage expelled(const std::string& cause) const;
-  /// Sends each node the topology, with the agent as its broker.
+  /// Sends each node, or only one, the topology, with the agent as its broker.
   void send_topology(const v1::Topology& topology, const std::string& publish_endpoint,
-                     const std::string& subscribe_endpoint, const std::string& password);
+                     const std::string& subscribe_endpoint, const std::string& password,
+                     const std::string& only = "");
 
  private:
   zmq::socket_t& router_;

@@ -40,17 +40,12 @@ std::vector<std::string> EnvironmentActor::produces() const {
   return topics;
 }
 
-EnvironmentState EnvironmentActor::common(Tick tick) const {
-  const SimTime time{tick * tick_length_.ns};
-  const Tt tt = clock_.tt(time);
+EnvironmentState environment_at(const Clock& clock, Tick tick, SimTime time) {
+  const Tt tt = clock.tt(time);
   const auto bodies = solar_system(tt);
-  std::optional<std::array<EarthOrientation, 2>> beside;
-  if (sensors_propagate_)
-    beside = {earth_orientation(clock_, {time.ns - slope_half_step_ns}),
-              earth_orientation(clock_, {time.ns + slope_half_step_ns})};
   return {.tick = tick,
           .time = time,
-          .earth = earth_orientation(clock_, time),
+          .earth = earth_orientation(clock, time),
           .sun_m = bodies.sun_m,
           .moon_m = bodies.moon_m,
           .earth_barycentric_m = bodies.earth_barycentric_m,
@@ -58,7 +53,16 @@ EnvironmentState EnvironmentActor::common(Tick tick) const {
           .tt_jd1 = tt.jd1,
           .tt_jd2 = tt.jd2,
           .moon_velocity_m_per_s = bodies.moon_velocity_m_per_s,
-          .earth_beside = beside};
+          .earth_beside = std::nullopt};
+}
+
+EnvironmentState EnvironmentActor::common(Tick tick) const {
+  const SimTime time{tick * tick_length_.ns};
+  EnvironmentState state = environment_at(clock_, tick, time);
+  if (sensors_propagate_)
+    state.earth_beside = {earth_orientation(clock_, {time.ns - slope_half_step_ns}),
+                          earth_orientation(clock_, {time.ns + slope_half_step_ns})};
+  return state;
 }
 
 SiteState EnvironmentActor::site(const SensorConfig& sensor, Tick tick) const {

@@ -8,6 +8,9 @@
 
 namespace dmise {
 
+/// What all sensors share at one tick.
+EnvironmentState environment_at(const Clock& clock, Tick tick, SimTime time);
+
 /// Publishes what all sensors share (Sun, Moon, the Earth's motion and orientation), and the
 /// atmosphere above each ground sensor. Each has its own rate, starting at tick 0.
 class EnvironmentActor : public Actor {

@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/config/object_names.h"
 #include "core/optics/projection.h"
+#include "core/products/frame_report.h"
 #include "core/products/task_json.h"
 #include "core/products/track_json.h"
 #include "core/time/iso8601.h"
@@ -35,10 +37,6 @@ std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor) {
       .exposure_s = sensor.exposure_s,
       .cadence_s = sensor.cadence_s,
       .first_exposure_s = sensor.first_exposure_s};
-}
-
-std::string fusion_journal_path(const std::string& directory) {
-  return directory + "/" + fusion_node + "/inputs.journal";
 }
 
 FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
@@ -108,8 +106,9 @@ FusionEvaluator::Found FusionEvaluator::fuse(Tick tick, std::span<const Message>
     const auto& [report, set] = exposure;
     if (!report || !set) continue;  // one of them was lost
     const Camera& camera = cameras_.at(key.first);
-    frames.push_back(
-        sensor_frame(*report, set->detections, camera.columns, camera.rows, camera.half_angle_rad));
+    frames.push_back(sensor_frame(*report, set->detections, camera.columns, camera.rows,
+                                  camera.half_angle_rad,
+                                  scenario_.fusion->settings.pointing_sigma_arcsec * arcsec));
   }
   TrackSet out{.tick = tick, .time = scenario_.time_of(tick), .node = fusion_node};
   if (!fusion_) throw Error("no roster came before tick " + std::to_string(tick));

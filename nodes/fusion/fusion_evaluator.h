@@ -67,7 +67,4 @@ class FusionEvaluator : public Evaluator {
   std::atomic<std::uint64_t> progress_{0};
 };
 
-/// Returns the path of the journal of a run.
-std::string fusion_journal_path(const std::string& directory);
-
 }  // namespace dmise

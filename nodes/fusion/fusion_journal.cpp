@@ -10,6 +10,7 @@
 
 #include "core/base/crc32c.h"
 #include "core/base/error.h"
+#include "core/config/node_kinds.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise {
@@ -137,6 +138,10 @@ Tick FusionJournal::ticks_written(const std::string& path) {
       ++next;
     }
   return next;
+}
+
+std::string fusion_journal_path(const std::string& directory) {
+  return directory + "/" + fusion_node + "/inputs.journal";
 }
 
 }  // namespace dmise

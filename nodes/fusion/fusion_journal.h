@@ -38,4 +38,7 @@ class FusionJournal {
   std::FILE* file_ = nullptr;
 };
 
+/// Returns the path of the journal of a run.
+std::string fusion_journal_path(const std::string& directory);
+
 }  // namespace dmise

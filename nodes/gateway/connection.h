@@ -6,8 +6,9 @@
 #include <boost/beast/http.hpp>
 #include <chrono>
 #include <mutex>
-#include <set>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "nodes/gateway/web_server.h"
 
@@ -25,6 +26,9 @@ class Connection {
   virtual ~Connection() = default;
   /// Called when there may be new messages.
   virtual void pump() {}
+  /// The client's address while it has not yet asked for anything with access to it; else "".
+  virtual std::string stranger() const { return {}; }
+  virtual void close() {}
 };
 
 /// Passes work from any thread to the server's thread, as long as there is a server.
@@ -52,11 +56,17 @@ struct Hub {
   WebServerOptions options;
   WebContent content;
   std::shared_ptr<ServerThread> thread;
-  std::set<Connection*> connections;
+  std::vector<Connection*> connections;  // the oldest first
   // Callbacks of connections that wait for a preview, by ticket. The thread that draws previews has
   // the ticket only, so that connections stay on this thread.
   std::map<std::uint64_t, std::function<void(SharedPreview)>> waiting;
   std::uint64_t last_ticket = 0;
+
+  void add(Connection* connection) { connections.push_back(connection); }
+  void remove(Connection* connection) { std::erase(connections, connection); }
+  /// Whether there is a place for another connection. When all are taken, the oldest stranger of
+  /// the address with the most loses its own.
+  bool make_room();
 };
 
 inline std::chrono::milliseconds milliseconds_of(double seconds) {

@@ -6,7 +6,6 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t max_head_bytes = 8192;
-constexpr const char* cookie_name = "dmise_token";
 
 // Pages load nothing from other servers. Cesium compiles WebAssembly and starts its workers from
 // blobs; scripts set styles of elements.
@@ -24,9 +23,14 @@ constexpr const char* no_dashboard =
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(Hub& hub, tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
-    hub_.connections.insert(this);
+    error_code ignored;
+    address_ = stream_.socket().remote_endpoint(ignored).address().to_string();
+    hub_.add(this);
   }
-  ~HttpConnection() override { hub_.connections.erase(this); }
+  ~HttpConnection() override { hub_.remove(this); }
+
+  std::string stranger() const override { return has_access_ ? "" : address_; }
+  void close() override { stream_.close(); }
 
   void read() {
     parser_.emplace();
@@ -54,13 +58,15 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     const auto target = parse_target(view_of(request.target()));
     if (!target) return refuse(http::status::not_found, "no such page");
     const std::string presented =
-        target->token.empty() ? cookie_value(view_of(request[http::field::cookie]), cookie_name)
-                              : target->token;
+        target->token.empty()
+            ? cookie_value(view_of(request[http::field::cookie]), cookie_name(host))
+            : target->token;
     const Access access = access_of(hub_.options.tokens, presented);
     if (access == Access::none)
       return refuse(http::status::unauthorized, "open the address with its token: /?token=...");
+    has_access_ = true;
     if (std::holds_alternative<LiveRequest>(target->path)) return become_viewer(request, access);
-    if (!target->token.empty()) return keep_token(*target);
+    if (!target->token.empty()) return keep_token(view_of(request.target()), host, target->token);
     if (const auto* frame = std::get_if<FrameRequest>(&target->path)) return send_frame(*frame);
     send_file(std::get<FileRequest>(target->path).path);
   }
@@ -75,11 +81,11 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   /// Moves the token from the address, which browsers show and store, to a cookie.
-  void keep_token(const RequestTarget& target) {
+  void keep_token(std::string_view target, std::string_view host, const std::string& token) {
     Answer answer = begin(http::status::see_other);
-    answer.set(http::field::location, "/");
-    answer.set(http::field::set_cookie, std::string(cookie_name) + "=" + target.token +
-                                            "; Path=/; HttpOnly; SameSite=Strict");
+    answer.set(http::field::location, without_token(target));
+    answer.set(http::field::set_cookie,
+               cookie_name(host) + "=" + token + "; Path=/; HttpOnly; SameSite=Strict");
     send(std::move(answer));
   }
 
@@ -116,12 +122,18 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     }
     const auto file = hub_.content.files.find(path);
     if (!file) return refuse(http::status::not_found, "no such page");
-    const bool same = view_of(parser_->get()[http::field::if_none_match]) == file->etag;
+    const auto& request = parser_->get();
+    const bool gzip =
+        takes_gzip(view_of(request[http::field::accept_encoding])) && !file->gzipped().empty();
+    const std::string& etag = gzip ? file->gzipped_etag : file->etag;
+    const bool same = view_of(request[http::field::if_none_match]) == etag;
     Answer answer = begin(same ? http::status::not_modified : http::status::ok);
     answer.set(http::field::content_type, file->type);
-    answer.set(http::field::etag, file->etag);
+    answer.set(http::field::etag, etag);
     answer.set(http::field::cache_control, "no-cache");  // ask each time whether it changed
-    if (!same) answer.body() = file->content;
+    answer.set(http::field::vary, "Accept-Encoding");
+    if (gzip) answer.set(http::field::content_encoding, "gzip");
+    if (!same) answer.body() = gzip ? file->gzipped() : file->content;
     send(std::move(answer));
   }
 
@@ -148,13 +160,21 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     answer.prepare_payload();
     if (parser_->get().method() == http::verb::head) answer.body().clear();
     answer_ = std::move(answer);
+    rest_.emplace(answer_);
+    write();
+  }
+
+  /// Sends the rest of the answer. A client has the time for each piece of it, not for the whole.
+  void write() {
     stream_.expires_after(milliseconds_of(hub_.options.request_within_s));
-    http::async_write(stream_, answer_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) return;
-      if (self->answer_.keep_alive()) return self->read();
-      error_code ignored;
-      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-    });
+    http::async_write_some(stream_, *rest_,
+                           [self = shared_from_this()](error_code error, std::size_t) {
+                             if (error) return;
+                             if (!self->rest_->is_done()) return self->write();
+                             if (self->answer_.keep_alive()) return self->read();
+                             error_code ignored;
+                             self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                           });
   }
 
   Hub& hub_;
@@ -162,6 +182,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   beast::flat_buffer buffer_{2 * max_head_bytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
   Answer answer_;
+  std::optional<http::response_serializer<http::string_body>> rest_;  // of the answer, to send
+  std::string address_;                                               // of the client
+  bool has_access_ = false;
 };
 
 }  // namespace

@@ -153,22 +153,18 @@ void LiveView::take(const TaskSet& set) {
   changed_.insert(MessageSlot::tasks);
 }
 
-void LiveView::Progress::advance(Tick tick) {
-  const double at = double(now().count()) * 1e-9;
-  if (at_s > 0.0 && at > at_s) {
-    const double rate = double(tick - done) / (at - at_s);
-    ticks_per_s = std::max(0.0, 0.5 * ticks_per_s + 0.5 * rate);
-  }
-  done = tick;
-  at_s = at;
-}
-
 void LiveView::take(const RunStatus& status, const std::map<std::string, std::uint64_t>& gaps) {
   if (status_ && status_->run_id != status.run_id) forget_run();
   if (!status_ || status_->start_utc != status.start_utc) encode_run(status);
   status_ = status;
-  Progress& clock = progress_[""];
-  clock.advance(status.settled);
+  const double now_s = double(now().count()) * 1e-9;
+  const auto ticks_per_s = [&](const std::string& name, Tick done) {
+    TickRate& rate = progress_[name];
+    if (status.paused) rate.reset();
+    rate.take(done, now_s);
+    return rate.ticks_per_s();
+  };
+  const double of_clock = ticks_per_s("", status.settled);
   const auto span = history_.span();
   JsonWriter json;
   json.begin_object().field("type", "status");
@@ -178,23 +174,21 @@ void LiveView::take(const RunStatus& status, const std::map<std::string, std::ui
   json.field("cause", status.cause).field("settled_tick", status.settled);
   json.field("granted_tick", status.granted).field("last_tick", status.last_tick);
   json.field("time_s", double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
-  json.field("rate", clock.ticks_per_s * status.tick_length.seconds());
-  json.field("ticks_per_s", clock.ticks_per_s);
+  json.field("rate", of_clock * status.tick_length.seconds());
+  json.field("ticks_per_s", of_clock);
   json.field("overruns", status.overruns).field("worst_lag_s", status.worst_lag_s);
   json.list("missing", status.missing).list("holding", status.holding);
   json.key("past").begin_object().field("from_s", span.from_s).field("to_s", span.to_s);
   json.field("states", std::uint64_t(span.snapshots)).end_object();
   json.key("nodes").begin_array();
   for (const NodeStatus& node : status.nodes) {
-    Progress& progress = progress_[node.name];
-    progress.advance(node.done);
     const auto missed = gaps.find(node.name);
     json.begin_object().field("name", node.name).field("state", node_state(node, status));
     json.field("tick", node.done).field("start", node.incarnation);
     // The broker does no ticks.
     json.field("lag_ticks",
                node.name == broker_name ? Tick(0) : std::max<Tick>(0, status.granted - node.done));
-    json.field("ticks_per_s", progress.ticks_per_s);
+    json.field("ticks_per_s", ticks_per_s(node.name, node.done));
     json.field("compute_s", node.times.compute_s).field("message_s", node.times.messaging_s);
     json.field("wait_s", node.times.waiting_s).field("frames", node.times.frames);
     json.field("detections", node.times.detections);
@@ -254,7 +248,8 @@ std::string LiveView::sensors_json() const {
     json.field("rows", std::int64_t(std::lround(2 * report.wcs.crpix_y + 1)));
     json.field("ra_rad", report.boresight_ra_rad).field("dec_rad", report.boresight_dec_rad);
     json.field("scale_rad", wcs_scale_rad_per_px(report.wcs));
-    json.field("limiting_magnitude", report.limiting_magnitude);
+    json.field("limiting_magnitude",
+               report.limiting_magnitude - report.magnitudes.solar_colour_mag);
     json.field("background_e", report.background_e).field("noise_e", report.noise_e);
     json.field("stars_expected", report.stars_expected).field("stars_found", report.stars_found);
     json.field("objects_rendered", report.objects_rendered);

@@ -9,6 +9,7 @@
 #include "nodes/gateway/latest_messages.h"
 #include "nodes/gateway/view_history.h"
 #include "nodes/runtime/observability/status.h"
+#include "nodes/runtime/observability/tick_rate.h"
 
 namespace dmise {
 
@@ -90,13 +91,7 @@ class LiveView {
   bool has_roster_ = false;
   double time_s_ = 0.0;  // simulation time of the latest state taken
   std::uint64_t notices_ = 0;
-  // Progress of the clock and of each node between answers of the time-master.
-  struct Progress {
-    Tick done = -1;
-    double at_s = 0.0, ticks_per_s = 0.0;
-    void advance(Tick tick);
-  };
-  std::map<std::string, Progress> progress_;
+  std::map<std::string, TickRate> progress_;  // "": of the clock
 };
 
 }  // namespace dmise

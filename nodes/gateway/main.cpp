@@ -11,6 +11,7 @@
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/process/host_port.h"
 #include "nodes/runtime/process/json_log.h"
+#include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/program.h"
 #include "nodes/runtime/security/security.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 struct GatewayOptions {
   std::string listen = "127.0.0.1:0", tokens, products, dashboard, announce_file;
+  double answer_within_s = 0.0;
   bool no_control = false, truth = false;
 };
 
@@ -60,6 +62,7 @@ int serve(const CommonFlags& flags, const GatewayOptions& options) {
                         .keys = flags.keys,
                         .takes_truth = options.truth,
                         .stop = &stop_signal(),
+                        .answer_within_s = options.answer_within_s,
                         .frames_served_at =
                             [&](std::uint64_t run_id, std::map<std::string, std::string> sensors) {
                               previews.follow(run_id, std::move(sensors));
@@ -99,5 +102,8 @@ int main(int argc, char** argv) {
       "show truth beside detections to viewers that may see it; with keys, the gateway's own "
       "must be allowed to receive truth");
   app.add_flag("--no-control", options.no_control, "viewers cannot control the clock");
+  app.add_option("--answer-within", options.answer_within_s,
+                 "end with an error if no time-master has answered in this time [s]; 0: wait")
+      ->check(dmise::number_between(0.0, 1e6));
   return dmise::run_program(app, flags, argc, argv, [&] { return dmise::serve(flags, options); });
 }

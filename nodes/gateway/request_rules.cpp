@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 
 namespace dmise {
@@ -58,13 +60,21 @@ std::optional<std::string> unescape(std::string_view text) {
   return plain;
 }
 
+/// Removes and returns the part of a list before the next separator.
+std::string_view take_part(std::string_view& list, char separator) {
+  const auto end = std::min(list.find(separator), list.size());
+  const std::string_view part = list.substr(0, end);
+  list.remove_prefix(std::min(end + 1, list.size()));
+  return part;
+}
+
+constexpr std::string_view token_key = "token=";
+
 std::string token_of(std::string_view query) {
-  while (!query.empty()) {
-    const auto end = std::min(query.find('&'), query.size());
-    const std::string_view part = query.substr(0, end);
-    if (part.starts_with("token=") && is_token(part.substr(6))) return std::string(part.substr(6));
-    query.remove_prefix(std::min(end + 1, query.size()));
-  }
+  while (!query.empty())
+    if (const auto part = take_part(query, '&');
+        part.starts_with(token_key) && is_token(part.substr(token_key.size())))
+      return std::string(part.substr(token_key.size()));
   return {};
 }
 
@@ -117,7 +127,8 @@ AccessTokens read_access_tokens(const std::string& path) {
     if (!(words >> kind)) continue;
     const std::string place = path + ":" + std::to_string(number) + ": ";
     if (kind != "view" && kind != "truth" && kind != "operator")
-      throw ConfigError(place + "must be view, truth or operator TOKEN, got " + kind);
+      throw ConfigError(place + "must be view, truth or operator TOKEN" +
+                        did_you_mean(kind, {"view", "truth", "operator"}) + ", got " + kind);
     if (!(words >> token) || words >> more || !is_token(token))
       throw ConfigError(place + kind + ": needs a token of 16 to 128 letters, digits, - or _");
     std::string& place_of = kind == "view"    ? tokens.view
@@ -180,16 +191,43 @@ std::optional<RequestTarget> parse_target(std::string_view target) {
   return request;
 }
 
+std::string without_token(std::string_view target) {
+  std::string rest(take_part(target, '?'));
+  char before = '?';
+  while (!target.empty()) {
+    const auto part = take_part(target, '&');
+    if (part.starts_with(token_key)) continue;
+    rest += before;
+    rest += part;
+    before = '&';
+  }
+  return rest;
+}
+
+std::string cookie_name(std::string_view host) {
+  const std::string_view port = host.substr(std::min(without_port(host).size() + 1, host.size()));
+  const bool is_number = !port.empty() && port.size() <= 5 &&
+                         port.find_first_not_of("0123456789") == std::string_view::npos;
+  return is_number ? "dmise_token_" + std::string(port) : "dmise_token";
+}
+
+bool takes_gzip(std::string_view encodings) {
+  while (!encodings.empty()) {
+    std::string_view weight = take_part(encodings, ',');
+    if (trimmed(take_part(weight, ';')) != "gzip") continue;
+    weight = trimmed(weight);
+    return !weight.starts_with("q=0") || weight.find_first_of("123456789") != weight.npos;
+  }
+  return false;
+}
+
 std::string cookie_value(std::string_view cookies, std::string_view name) {
   while (!cookies.empty()) {
-    const auto end = std::min(cookies.find(';'), cookies.size());
-    std::string_view part = cookies.substr(0, end);
-    while (part.starts_with(' ')) part.remove_prefix(1);
+    const std::string_view part = trimmed(take_part(cookies, ';'));
     if (part.starts_with(name) && part.substr(name.size()).starts_with('=')) {
       const std::string_view value = part.substr(name.size() + 1);
       return is_token(value) ? std::string(value) : std::string();
     }
-    cookies.remove_prefix(std::min(end + 1, cookies.size()));
   }
   return {};
 }

@@ -65,6 +65,16 @@ struct RequestTarget {
 /// Parses the target of a request; empty if there is no such target.
 std::optional<RequestTarget> parse_target(std::string_view target);
 
+/// The target of a request whose target has a token, without it.
+std::string without_token(std::string_view target);
+
+/// Name of the cookie with the token of the server `host`, the value of a Host header. Servers on
+/// other ports of a host have others, for browsers send cookies to all of its ports.
+std::string cookie_name(std::string_view host);
+
+/// Whether `encodings`, the value of an Accept-Encoding header, admits gzip.
+bool takes_gzip(std::string_view encodings);
+
 /// Returns the value of `name` in a Cookie header, a token; "" if there is none.
 std::string cookie_value(std::string_view cookies, std::string_view name);
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "nodes/gateway/live_view.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/limited_log.h"
@@ -127,6 +128,7 @@ class RunObserver::Connections {
   }
 
   LiveView& view() { return view_; }
+  bool was_answered() const { return bool(receiver_); }
 
  private:
   void call_master() {
@@ -278,7 +280,12 @@ class RunObserver::Connections {
 void RunObserver::run(const std::function<void()>& changed) {
   Connections connections(options_, latest_, history_);
   Instant next = now() + publish_interval;
+  const Instant begun = now();
+  const auto within = std::chrono::duration<double>(options_.answer_within_s);
   while (!options_.stop->is_set()) {
+    if (within.count() > 0.0 && !connections.was_answered() && now() - begun > within)
+      throw Error(options_.master + ": no time-master answers within " +
+                  shortest_text(options_.answer_within_s) + " s");
     connections.wait(*options_.stop, has_commands_, next);
     try {
       for (const ClockCommand& command : take_commands()) connections.control(command);

@@ -18,6 +18,7 @@ struct RunObserverOptions {
   std::string keys;              // directory of keys; empty: none
   bool takes_truth = false;      // from each sensor; with keys its key must allow that
   const Event* stop = nullptr;
+  double answer_within_s = 0.0;  // the time-master's first; 0: it is waited for
   /// Called about twice a second with the frame endpoints of sensors; none: the run is over.
   std::function<void(std::uint64_t run_id, std::map<std::string, std::string> endpoints)>
       frames_served_at = [](std::uint64_t, const std::map<std::string, std::string>&) {};
@@ -32,7 +33,8 @@ class RunObserver {
       : options_(std::move(options)), latest_(latest), history_(history) {}
 
   /// Observes until `stop`, on its own thread. `changed`: called there some ten times a second when
-  /// there is news. Throws `ConfigError` for keys that cannot be used.
+  /// there is news. Throws `ConfigError` for keys that cannot be used, `Error` without the first
+  /// answer in time.
   void run(const std::function<void()>& changed);
 
   /// Queues a command for the clock, sent with the operator's key; from any thread. False if too

@@ -1,5 +1,7 @@
 #include "nodes/gateway/static_files.h"
 
+#include <zlib.h>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -9,6 +11,35 @@
 #include "core/base/error.h"
 
 namespace dmise {
+namespace {
+
+constexpr std::size_t fewest_bytes_to_gzip = 1024;
+constexpr int gzip_format = 15 + 16;  // zlib: the largest window, with the header of gzip
+
+std::string gzip(const std::string& bytes) {
+  z_stream stream{};
+  if (deflateInit2(&stream, 6, Z_DEFLATED, gzip_format, 8, Z_DEFAULT_STRATEGY) != Z_OK) return {};
+  std::string out(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = uInt(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = uInt(out.size());
+  const bool ended = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return ended ? out : std::string();
+}
+
+}  // namespace
+
+const std::string& StaticFile::gzipped() const {
+  if (gzipped_) return *gzipped_;
+  gzipped_.emplace();
+  const bool compressed = type == "image/png" || type == "image/jpeg";
+  if (!compressed && content.size() >= fewest_bytes_to_gzip) gzipped_ = gzip(content);
+  if (gzipped_->size() >= content.size()) gzipped_->clear();
+  return *gzipped_;
+}
 
 const char* media_type(const std::string& path) {
   static constexpr std::pair<std::string_view, const char*> types[] = {
@@ -44,7 +75,9 @@ StaticFiles::StaticFiles(const std::string& directory) {
       auto file = std::make_shared<StaticFile>();
       file->content = std::move(content).str();
       file->type = media_type(path);
-      file->etag = '"' + sha256_hex(file->content).substr(0, 32) + '"';
+      const std::string digest = sha256_hex(file->content).substr(0, 32);
+      file->etag = '"' + digest + '"';
+      file->gzipped_etag = '"' + digest + "-gzip\"";
       bytes += file->content.size();
       files_[path] = std::move(file);
       if (bytes > max_bytes || files_.size() > max_files)

@@ -1,12 +1,21 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace dmise {
 
 struct StaticFile {
   std::string content, type, etag;
+  std::string gzipped_etag;
+
+  /// The content as gzip (RFC 1952); "" if that is not worth it. Compressed when first asked for:
+  /// use it from one thread.
+  const std::string& gzipped() const;
+
+ private:
+  mutable std::optional<std::string> gzipped_;
 };
 
 /// The files of the dashboard, read once, so that no request can name another file.

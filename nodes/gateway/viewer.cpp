@@ -19,9 +19,9 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(Hub& hub, beast::tcp_stream stream, Access access)
       : hub_(hub), socket_(std::move(stream)), access_(access) {
-    hub_.connections.insert(this);
+    hub_.add(this);
   }
-  ~Viewer() override { hub_.connections.erase(this); }
+  ~Viewer() override { hub_.remove(this); }
 
   void accept(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();

@@ -1,6 +1,10 @@
 #include "nodes/gateway/web_server.h"
 
+#include <netinet/tcp.h>
+
+#include <algorithm>
 #include <boost/asio/steady_timer.hpp>
+#include <map>
 #include <thread>
 
 #include "core/base/error.h"
@@ -11,8 +15,27 @@ namespace dmise {
 namespace {
 
 constexpr int send_buffer_bytes = 256 << 10;  // of a connection, in the kernel
+// Bytes that wait in it to be sent: a slow line is seen to make progress each time these are gone.
+using UnsentBytes = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+constexpr int unsent_bytes = 16 << 10;
 
 }  // namespace
+
+bool Hub::make_room() {
+  if (connections.size() < options.most_connections) return true;
+  std::map<std::string, std::size_t> strangers;
+  for (const Connection* connection : connections)
+    if (const std::string address = connection->stranger(); !address.empty()) ++strangers[address];
+  if (strangers.empty()) return false;
+  const std::string most = std::ranges::max_element(strangers, {}, [](const auto& entry) {
+                             return entry.second;
+                           })->first;
+  Connection* oldest = *std::ranges::find_if(
+      connections, [&](const Connection* connection) { return connection->stranger() == most; });
+  remove(oldest);
+  oldest->close();
+  return true;
+}
 
 struct WebServer::Work {
   Work(WebServerOptions options, WebContent content)
@@ -49,10 +72,11 @@ struct WebServer::Work {
         retry.expires_after(std::chrono::milliseconds(100));
         return retry.async_wait([this](error_code) { accept(); });
       }
-      if (hub.connections.size() < hub.options.most_connections) {
+      if (hub.make_room()) {
         error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         socket.set_option(boost::asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
+        socket.set_option(UnsentBytes(unsent_bytes), ignored);
         serve_http(hub, std::move(socket));
       }  // else it is closed
       accept();

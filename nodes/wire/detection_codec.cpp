@@ -47,6 +47,14 @@ Detection take_detection(const v1::Detection& message) {
 #define DMISE_WHERE(field, key) d.field = message.field();
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
                          DMISE_NONE, DMISE_WHERE)
+#undef DMISE_NONE
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_VECTOR
+#undef DMISE_PAIR
+#undef DMISE_WHERE
   return d;
 }
 

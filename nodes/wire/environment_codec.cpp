@@ -17,7 +17,7 @@ Rotation<To, From> take_rotation(const Repeated& field, const char* name) {
   return r;
 }
 
-void put(v1::EarthOrientation* message, const EarthOrientation& earth) {
+void put_orientation(v1::EarthOrientation* message, const EarthOrientation& earth) {
   message->set_time_ns(earth.time.ns);
   put_rotation(message->mutable_cirs_from_gcrs(), earth.cirs_from_gcrs);
   put_rotation(message->mutable_itrs_from_tirs(), earth.itrs_from_tirs);
@@ -44,10 +44,10 @@ Encoded encode_body(const EnvironmentState& state) {
   v1::EnvironmentState message;
   message.set_tick(state.tick);
   message.set_time_ns(state.time.ns);
-  put(message.mutable_earth(), state.earth);
+  put_orientation(message.mutable_earth(), state.earth);
   if (state.earth_beside)
     for (const EarthOrientation& earth : *state.earth_beside)
-      put(message.add_earth_beside(), earth);
+      put_orientation(message.add_earth_beside(), earth);
   put(message.mutable_sun_m(), state.sun_m);
   put(message.mutable_moon_m(), state.moon_m);
   put(message.mutable_earth_barycentric_m(), state.earth_barycentric_m);

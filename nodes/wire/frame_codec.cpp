@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/products/frame_report.h"
 #include "dmise/v1/frame.pb.h"
 #include "nodes/wire/codecs.h"
 

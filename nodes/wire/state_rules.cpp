@@ -5,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/products/detection_fields.h"
+#include "core/products/frame_report.h"
 #include "nodes/wire/codecs.h"
 #include "nodes/wire/field_rules.h"
 
@@ -186,6 +187,9 @@ void check(const Detection& d) {
 #define DMISE_PAIR(x, y, key) finite(d.x, #x), finite(d.y, #y);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_PAIR,
                          DMISE_NONE, DMISE_NONE)
+#undef DMISE_NONE
+#undef DMISE_VALUE
+#undef DMISE_PAIR
 }
 
 void check(const DetectionSet& set) {
@@ -312,7 +316,9 @@ void check_place(const std::string& topic, const Envelope& envelope, const State
   const Place where = std::visit([](const auto& s) { return place(s); }, state);
   // The roster precedes the states on their topic as well.
   const bool on_either = topic == objects_topic && std::holds_alternative<ObjectRoster>(state);
-  if (topic != where.topic && !on_either)
+  const bool of_actor =
+      topic.starts_with(actor_prefix) && std::holds_alternative<ObjectStates>(state);
+  if (topic != where.topic && !on_either && !of_actor)
     throw Refused(Refusal::topic, topic + ": a state of " + where.topic);
   if ((where.tick && *where.tick != envelope.tick) || (where.time && *where.time != envelope.time))
     throw Refused(Refusal::tick, topic + ": the state is of another tick than its envelope");

@@ -22,6 +22,10 @@ Task take_task(const v1::Task& message) {
 #define DMISE_LIST(field, key, size) t.field = take<size>(message.field(), #field);
 #define DMISE_NUMBERS(field, key) t.field.assign(message.field().begin(), message.field().end());
   DMISE_TASK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_LIST, DMISE_NUMBERS)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_LIST
+#undef DMISE_NUMBERS
   return t;
 }
 

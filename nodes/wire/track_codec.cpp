@@ -30,6 +30,12 @@ Track take_track(const v1::Track& message) {
 #define DMISE_VECTOR(field, key) t.field = take_vec<Gcrs>(message.field(), #field);
 #define DMISE_TEXTS(field, key) t.field.assign(message.field().begin(), message.field().end());
   DMISE_TRACK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_TEXTS)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_VECTOR
+#undef DMISE_TEXTS
   return t;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/detector/expected_noise.h"
 #include "core/detector/expected_signal.h"
+#include "core/effects/plan_facts.h"
 #include "core/optics/psf_plan.h"
 #include "sensors/accuracy/source_capsule.h"
 

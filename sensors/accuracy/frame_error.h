@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/base/pixel.h"
-#include "core/effects/plan_facts.h"
+#include "core/effects/accuracy.h"
 #include "sensors/accuracy/scene_frames.h"
 
 namespace dmise {

@@ -12,6 +12,7 @@
 #include "core/base/quantile.h"
 #include "core/config/effect_list.h"
 #include "core/effects/frame_effects.h"
+#include "core/effects/plan_facts.h"
 #include "sensors/pipeline/exposure_planner.h"
 #include "sensors/pipeline/objects_in_field.h"
 

@@ -105,6 +105,7 @@ bool has_spans(const Scenario& scenario) {
 }  // namespace
 
 void SampleMaker::prepare(const Scenario& scenario) {
+  refuse_own_nodes(scenario.own_nodes, "dmise dataset");
   if (!stars_.contains(scenario.star_catalogue_path))
     stars_[scenario.star_catalogue_path] = load_stars(scenario);
   if (checked_.insert(names_in(scenario)).second) {

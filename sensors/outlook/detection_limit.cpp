@@ -54,7 +54,7 @@ double correlation_squared(double sigma_px, double length_px) {
 
 DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px, double star_px) {
   DetectionLimit limit{.streak_px = streak_px};
-  limit.point_e = electrons_of(point_limit_snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
+  limit.point_e = limiting_point_e(noise_e, sigma_px);
   if (star_px >= detection_limits::least_difference_px) {
     // Beyond a few widths the correlation no longer changes: limit the length of the sum.
     const double unlike = 1.0 - correlation_squared(sigma_px, std::min(star_px, 100 * sigma_px));

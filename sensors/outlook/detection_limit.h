@@ -8,20 +8,21 @@ namespace dmise {
 
 /// Faintest detectable light.
 struct DetectionLimit {
-  double point_e = 0.0;                 // electrons of a point in the exposure
+  double point_e = 0.0;  // electrons of a point in the exposure, at the limiting magnitude
   std::optional<double> found_point_e;  // of one distinguished from stars in half of all frames
   double streak_e_per_px = 0.0;         // electrons per pixel of length of a streak ...
   double streak_px = 0.0;               // ... of this length
 };
 
-/// Required SNR of a point's fit, and of a pixel of a streak in the frame filtered for points
-/// (core/detection/detection_limits.h).
+/// Required SNR of the fit of a point or a whole streak, and of the brightest place of a streak in
+/// the frame filtered for points (core/detection/detection_limits.h).
 inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 
 /// For pixels of `noise_e` rms without the source, and the Gaussian `sigma_px` including the pixel.
 ///
-/// A point of N electrons has SNR N / sqrt(N + A noise^2), where A is the inverse of the sum of
-/// squares of its fractions of light in the pixels. A streak of density d has SNR d / noise
+/// The limiting magnitude is that of `limiting_point_e`. A point of N electrons has the fit's SNR
+/// N / sqrt(N + A noise^2), where A is the inverse of the sum of squares of its fractions of light
+/// in the pixels. A streak of density d has SNR d / noise
 /// everywhere along its length in the frame filtered for points; the maximum of the L / (2 sqrt(pi)
 /// sigma) independent positions is above the threshold in half of all frames, and the whole streak
 /// reaches the point's SNR. Or the whole streak reaches `least_streak_snr`, without such a

@@ -6,6 +6,7 @@
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
+#include "core/detection/detection_limits.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -71,17 +72,17 @@ std::string field_text(const SensorOutlook& o) {
 }
 
 std::string limit_text(const SensorOutlook& o) {
-  const FrameOutlook& f = middle_of(o);
-  if (!f.point_limit_v_mag) return "";
-  std::string text =
-      formatted("a point of V = %.1f has SNR %g", *f.point_limit_v_mag, point_limit_snr);
+  std::string text = limiting_magnitude_text(o);
+  if (text.empty()) return "";
+  text += " (" + limiting_magnitude_meaning() + ")";
+  const FrameOutlook& f = *o.mid_run;
   if (f.found_point_v_mag)
     text += formatted("; half of the points of V = %.1f are found beside star trails of %.0f px",
                       *f.found_point_v_mag, f.star_px);
   if (f.streak_limit_v_mag)
     text += formatted(
-        "; half of the streaks of V = %.1f are found (%g deg/s, %.0f px, SNR %g in a pixel)",
-        *f.streak_limit_v_mag, f.streak_deg_per_s, f.streak_px, streak_limit_snr);
+        "; half of the streaks of V = %.1f are found (%g deg/s, %.0f px, by their whole light)",
+        *f.streak_limit_v_mag, f.streak_deg_per_s, f.streak_px);
   return text;
 }
 
@@ -111,6 +112,16 @@ std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
 }
 
 }  // namespace
+
+std::string limiting_magnitude_text(const SensorOutlook& o) {
+  if (!o.mid_run || !o.mid_run->point_limit_v_mag) return "";
+  return formatted("limiting magnitude V = %.2f", *o.mid_run->point_limit_v_mag);
+}
+
+std::string limiting_magnitude_meaning() {
+  return formatted("a point at the detector's threshold, %g times the noise, in mid run",
+                   detection_limits::seed_snr);
+}
 
 std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& where) {
   std::vector<std::string> warnings;
@@ -168,6 +179,7 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
 
 std::string short_text(const SensorOutlook& o) {
   std::string text = field_text(o);
+  if (!o.by_node.empty()) text += "; depends on what node " + o.by_node + " moves";
   if (o.frames.empty()) return text;
   if (const std::string limit = limit_text(o); !limit.empty()) text += "; " + limit;
   if (o.on_ground)
@@ -185,8 +197,10 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   const auto say = [&](const std::string& text) { lines.push_back(o.sensor + ": " + text); };
   say(field_text(o));
   if (o.cued) say("is cued by the fusion node; what follows is for its parked position");
+  if (!o.by_node.empty())
+    say("depends on what node " + o.by_node + " moves: its frames can't be examined beforehand");
   if (o.frames.empty()) return lines;
-  if (const std::string limit = limit_text(o); !limit.empty()) say(limit + " in mid run");
+  if (const std::string limit = limit_text(o); !limit.empty()) say(limit);
   if (o.on_ground) {
     std::string text = "elevation of the boresight " +
                        course_of(o.frames, &FrameOutlook::boresight_elevation_rad) + ", the Sun " +
@@ -221,7 +235,9 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
   json.field("pixel_scale_arcsec", o.camera.pixel_rad / arcsec);
   json.field("f_number", o.camera.f_number);
   json.field("frames_in_run", std::int64_t(o.frames_in_run));
-  json.field("point_limit_snr", point_limit_snr).field("streak_limit_snr", streak_limit_snr);
+  json.field("point_limit_snr", detection_limits::seed_snr);
+  json.field("streak_limit_snr", streak_limit_snr);
+  if (o.mid_run) json.field("limiting_magnitude", o.mid_run->point_limit_v_mag);
   if (!o.target.empty()) json.field("target", o.target);
   if (o.cued) json.field("cued", true);
   if (!o.excluded.empty()) {

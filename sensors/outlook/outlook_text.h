@@ -10,6 +10,11 @@ namespace dmise {
 /// Warnings of an outlook, one line each, beginning with `where`.
 std::vector<std::string> warnings_of(const SensorOutlook& outlook, const std::string& where);
 
+/// "limiting magnitude V = 12.34", as `check` and `explain` print it; empty where there is none.
+std::string limiting_magnitude_text(const SensorOutlook& outlook);
+/// Its definition in words.
+std::string limiting_magnitude_meaning();
+
 /// A few lines of text, each beginning with the sensor's name.
 std::vector<std::string> lines_of(const SensorOutlook& outlook);
 

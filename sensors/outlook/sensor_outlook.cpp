@@ -38,6 +38,15 @@ std::optional<Loss> first_loss(const Scenario& scenario, const SensorConfig& sen
   return std::nullopt;
 }
 
+/// The node that moves or turns one of these objects; empty: none does.
+std::string node_of(const ObjectPopulation& objects) {
+  for (const MotionModel& model : objects.models)
+    if (const auto* by_node = std::get_if<NodeMotion>(&model)) return by_node->node;
+  for (const ObjectAttitude& attitude : objects.attitudes)
+    if (const auto* by_node = std::get_if<NodeAttitude>(&attitude.model)) return by_node->node;
+  return "";
+}
+
 /// Examines all frames, or evenly spaced ones, for bodies that are too near to the axis.
 void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
                         const ObjectPopulation& needed, const StateSource& source,
@@ -82,18 +91,23 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   out.cued = std::holds_alternative<PointCued>(sensor.pointing);
   out.least_limb_angle_rad = options.least_limb_angle_rad;
   const auto needed = only_these(population, needed_objects(sensor, population.roster));
+  out.by_node = node_of(needed);
+  if (!out.by_node.empty()) return out;
   const StateSource source_of_needed(needed, clock, threads);
   const auto loss = first_loss(scenario, sensor, needed, source_of_needed, out.frames_in_run);
   if (loss && loss->frame == 1) throw ConfigError(sensor.where + ": " + loss->why);
   const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
 
   FrameWorlds worlds(scenario, sensor, clock);
-  if (sensor.camera.exclusion.any()) {
+  if (options.most_frames > 0 && sensor.camera.exclusion.any()) {
     out.exclusion_action = sensor.camera.exclusion.action;
     look_for_exclusion(scenario, sensor, needed, source_of_needed, frames, worlds, out);
   }
   std::uint32_t looks = options.most_frames;
-  if (frames > 0 && sensor.effects.has(SpaceObjects::facts) && !population.roster.objects.empty()) {
+  if (looks == 0) {
+    out.objects_counted = false;
+  } else if (frames > 0 && sensor.effects.has(SpaceObjects::facts) &&
+             !population.roster.objects.empty()) {
     const auto ticks = worlds.ticks_of(frame_times(sensor, 1));
     const std::size_t states =
         3 * std::size_t(ticks.last - ticks.first + 1) * population.roster.objects.size();
@@ -110,11 +124,16 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
                            .shapes = &shapes,
                            .psf_sigma_px = blur_sigma_px(sensor),
                            .count_objects = out.objects_counted};
-  for (const std::uint32_t frame : evenly(frames, looks)) {
+  const auto look_at = [&](std::uint32_t frame, const OutlookScene& with) {
     const FrameTimes exposure = frame_times(sensor, frame);
     const World world = worlds.around(exposure, seen, source);
-    out.frames.push_back(frame_outlook(View(sensor, exposure, world, scenario.seed), scene));
-  }
+    return frame_outlook(View(sensor, exposure, world, scenario.seed), with);
+  };
+  for (const std::uint32_t frame : evenly(frames, looks))
+    out.frames.push_back(look_at(frame, scene));
+  OutlookScene without_objects = scene;
+  without_objects.count_objects = false;
+  if (frames > 0) out.mid_run = look_at((frames + 1) / 2, without_objects);
   out.warnings = warnings_of(out, sensor.where.empty() ? sensor.name : sensor.where);
   if (loss)
     out.warnings.push_back(sensor.where + ": the run ends in an error at frame " +

@@ -25,8 +25,9 @@ struct SensorOutlook {
   std::string sensor;
   CameraFigures camera;
   bool on_ground = true;
-  std::string target;  // of the pointing; empty: none
-  bool cued = false;   // examined as it is parked
+  std::string target;   // of the pointing; empty: none
+  bool cued = false;    // examined as it is parked
+  std::string by_node;  // of its platform or target, which a node moves or turns: not examined
   double least_limb_angle_rad = 0.0;
   std::uint32_t frames_in_run = 0;
   ExclusionAction exclusion_action = ExclusionAction::flag;
@@ -35,11 +36,12 @@ struct SensorOutlook {
   std::vector<ExcludedFrames> excluded;    // of each body that the camera has a limit for
   bool objects_counted = true;             // false: too many objects
   std::vector<FrameOutlook> frames;        // examined: the first, the last, and evenly spaced ones
+  std::optional<FrameOutlook> mid_run;     // of the frame in the middle of the run, for its limits
   std::vector<std::string> warnings;       // one line each, with the sensor's place in the scenario
 };
 
 struct OutlookOptions {
-  std::uint32_t most_frames = 16;  // examined
+  std::uint32_t most_frames = 16;  // examined; 0: only the one in mid run
   /// Number of object states computed for counting: beyond, fewer frames are examined, and if two
   /// are too many, objects are not counted.
   std::size_t most_states = 4'000'000;

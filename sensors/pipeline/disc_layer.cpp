@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/effects/plan_facts.h"
 #include "core/frames/rotation_angle.h"
 #include "core/optics/projection.h"
 #include "core/sky/earth_disc.h"

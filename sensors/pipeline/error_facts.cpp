@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/effects/plan_facts.h"
 #include "core/frames/earth_orientation.h"
 #include "core/frames/rotation_angle.h"
 

@@ -1,5 +1,4 @@
 #pragma once
-#include "core/effects/plan_facts.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {

@@ -67,17 +67,16 @@ double saturated_e(const SensorConfig& sensor) {
 }
 
 /// Turbulence before a sensor, whatever level of it the scenario asks for.
-PlanFacts::Air air_facts(const SensorConfig& sensor) {
+AirFacts air_facts(const SensorConfig& sensor) {
   const Optics& optics = sensor.camera.optics;
   const double wavelength_m = sensor.camera.band.centre_m;
   const SensorSeeing& seeing = *sensor.seeing;
   const auto plan = [&](AirTurbulence::Level level) {
     return plan_psf(optics, wavelength_m, seeing, sensor.exposure_s, level);
   };
-  PlanFacts::Air air{
-      .airy_px = airy_px(optics, wavelength_m),
-      .apertures_per_r0 = optics.aperture_m / seeing.r0_at_m(wavelength_m),
-      .apertures_blown = seeing.wind_m_per_s * sensor.exposure_s / optics.aperture_m};
+  AirFacts air{.airy_px = airy_px(optics, wavelength_m),
+               .apertures_per_r0 = optics.aperture_m / seeing.r0_at_m(wavelength_m),
+               .apertures_blown = seeing.wind_m_per_s * sensor.exposure_s / optics.aperture_m};
   const Detector& detector = sensor.camera.detector;
   if (detector.blooming) air.bleeds_at_e = detector.full_well_e;
   try {
@@ -163,13 +162,16 @@ void ExposurePlanner::look_at_sensor() {
                  optics.spread.grid_rows;
   }
   add_blur_facts(optics, band.centre_m, f);
-  // The finest scale: neighbours of pixels from the centre to a corner.
-  f.pixel_rad = optics.pixel_angle_rad();
+  // The scales: neighbours of pixels from the centre to a corner.
+  f.pixel_rad = f.widest_pixel_rad = optics.pixel_angle_rad();
   look_over(optics, 1.0, [&](PixelPosition at, const Vec<CameraFrame>& here) {
     for (const PixelPosition next :
          {PixelPosition{at.x_px + 1, at.y_px}, PixelPosition{at.x_px, at.y_px + 1}})
-      if (const auto there = unproject(optics, next))
-        f.pixel_rad = std::min(f.pixel_rad, std::max(angle_rad(here, *there), 1e-12));
+      if (const auto there = unproject(optics, next)) {
+        const double step_rad = std::max(angle_rad(here, *there), 1e-12);
+        f.pixel_rad = std::min(f.pixel_rad, step_rad);
+        f.widest_pixel_rad = std::max(f.widest_pixel_rad, step_rad);
+      }
     if (optics.vignetting.any())
       f.least_illumination = std::min(f.least_illumination, relative_illumination(optics, at));
   });

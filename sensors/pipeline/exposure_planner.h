@@ -2,7 +2,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/effects/plan_facts.h"
 #include "core/plan/planner.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/star_facts.h"

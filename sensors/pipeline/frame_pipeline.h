@@ -8,6 +8,7 @@
 #include "core/plan/planner.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
+#include "core/products/frame_report.h"
 #include "core/products/truth.h"
 #include "core/sky/star_cache.h"
 #include "core/time/clock.h"

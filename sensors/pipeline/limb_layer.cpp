@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/optics/projection.h"
 #include "core/sky/limb_air.h"
 #include "core/sky/limb_airglow.h"

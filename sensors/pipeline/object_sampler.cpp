@@ -76,6 +76,17 @@ double ObjectSampler::magnitude(std::size_t object, const Motion& motion,
                                   illumination(motion, at.observer.position_m));
 }
 
+double ObjectSampler::magnitude_of_all_light(std::size_t object, const Motion& motion,
+                                             const ExposureInstant& at) const {
+  if (!with_secondary_) return magnitude(object, motion, at);
+  if (const ObjectShape* own_shape = shape(object))
+    if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m))
+      return shape_magnitude(*own_shape, *pose);
+  const double light = light_of_magnitude(magnitude(object, motion, at)) +
+                       secondary_photons(object, motion, at) / zero_mag_;
+  return light > 0.0 ? std::min(darkest_mag, magnitude_of_light(light)) : darkest_mag;
+}
+
 const ObjectShape* ObjectSampler::shape(std::size_t object) const {
   return shapes_ ? shapes_->of(view_.world().roster().objects[object].catalogue_number) : nullptr;
 }

@@ -47,8 +47,11 @@ class ObjectSampler {
 
   Illumination illumination(const Motion& motion, const Vec<Gcrs>& observer_m) const;
 
-  /// Returns V above the atmosphere when fully lit.
+  /// Returns V above the atmosphere when fully lit by the Sun, which alone lights it.
   double magnitude(std::size_t object, const Motion& motion, const ExposureInstant& at) const;
+  /// The same with the light of Earth and Moon, where the effects are on: V of all light drawn.
+  double magnitude_of_all_light(std::size_t object, const Motion& motion,
+                                const ExposureInstant& at) const;
 
   /// Null where light is not spread along the vertical.
   const Spectra* spectra() const { return spectra_ ? &*spectra_ : nullptr; }

@@ -117,7 +117,11 @@ double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape&
 }
 
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {
-  const double light = shape.light(pose.to_sun)->reflected_m2_per_sr(pose.to_sun, pose.to_viewer) /
+  const auto facets = shape.light(pose.to_sun);
+  double reflected_m2_per_sr = facets->reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
+  if (!pose.secondary.empty())
+    reflected_m2_per_sr += facets->reflected_m2_per_sr(pose.secondary, pose.to_viewer);
+  const double light = reflected_m2_per_sr /
                        (pose.range_m * pose.range_m * pose.sun_distance_au * pose.sun_distance_au);
   return light > 0.0 ? std::min(darkest_mag, sun_v_mag + magnitude_of_light(light)) : darkest_mag;
 }

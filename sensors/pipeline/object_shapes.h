@@ -82,7 +82,8 @@ double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& sha
 double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                                   const ShapePose& pose);
 
-/// V magnitude of the sunlight alone when fully sunlit, `darkest_mag` at most.
+/// V magnitude of the reflected light when fully sunlit, with the pose's secondary light;
+/// `darkest_mag` at most.
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose);
 
 /// Angle that the object turns by over a part of the exposure [rad], or its panel if that is more,

@@ -9,16 +9,13 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/json.h"
 #include "core/base/paths.h"
 #include "core/base/whole_file.h"
-#include "core/config/effect_list.h"
 #include "core/detection/detection_json.h"
 #include "core/image/fits_file.h"
 #include "core/image/marked_picture.h"
 #include "core/image/plane_file.h"
 #include "core/pictures/picture_file.h"
-#include "core/plan/plan_json.h"
 #include "core/products/frame_file.h"
 #include "core/time/iso8601.h"
 
@@ -103,7 +100,16 @@ void ProductWriter::write_planes(const FrameProducts& f) const {
   if (output_.radiance_exr) write_exr(path("-radiance.exr"), radiance_exr(p, f.header));
 }
 
+ProductWriter::~ProductWriter() {
+  try {
+    if (const std::string left = costs_.take(); !left.empty()) append("cost.jsonl", left);
+  } catch (const Error&) {
+    // Costs of a few frames are lost, no product.
+  }
+}
+
 void ProductWriter::append(const char* name, const std::string& lines) const {
+  if (lines.empty() && path_exists(directory_ + "/" + name)) return;
   const std::string path = directory_ + "/" + name;
   std::ofstream file(path, std::ios::app);
   file << lines << std::flush;
@@ -143,15 +149,7 @@ void ProductWriter::write(const FrameProducts& f) {
   for (const auto& detection : f.detections) lines += to_json(detection, utc) + "\n";
   append("detections.jsonl", lines);
 
-  JsonWriter cost;
-  cost.begin_object().field("sensor", f.report.sensor).field("frame", number);
-  cost.field("total_s", f.total_s).field("detection_s", f.detection_s).field("pss_mb", pss_mb());
-  cost.key("effects_s").begin_object();
-  for (const EffectFacts* effect : all_effects()) cost.field(effect->name, f.times[*effect]);
-  cost.end_object();
-  if (!f.plan.planned.empty()) write_plan(cost.key("plan"), f.plan);
-  cost.end_object();
-  append("cost.jsonl", cost.take() + "\n");
+  append("cost.jsonl", costs_.add(f, pss_mb()));
   append("frames.jsonl", to_json(f.report, utc) + "\n");
 }
 

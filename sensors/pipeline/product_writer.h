@@ -5,6 +5,7 @@
 #include "core/config/scenario.h"
 #include "core/effects/effects.h"
 #include "core/time/clock.h"
+#include "sensors/pipeline/cost_lines.h"
 #include "sensors/pipeline/frame_pipeline.h"
 
 namespace dmise {
@@ -16,6 +17,10 @@ namespace dmise {
 class ProductWriter {
  public:
   ProductWriter(std::string directory, const OutputConfig& output, Clock clock);
+
+  ~ProductWriter();
+  ProductWriter(const ProductWriter&) = delete;
+  ProductWriter& operator=(const ProductWriter&) = delete;
 
   void write(const FrameProducts& frame);
   /// Removes the lines of frames after `last` and lines that an earlier process left incomplete.
@@ -30,6 +35,7 @@ class ProductWriter {
   std::string directory_;
   OutputConfig output_;
   Clock clock_;
+  CostLines costs_;
 };
 
 }  // namespace dmise

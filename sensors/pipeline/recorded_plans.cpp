@@ -7,6 +7,7 @@
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/config/effect_list.h"
+#include "sensors/pipeline/cost_lines.h"
 #include "sensors/pipeline/frame_times.h"
 
 namespace dmise {
@@ -25,6 +26,13 @@ RecordedPlans plans_of(const Json& frames, const std::string& sensor) {
   return plans;
 }
 
+/// Frames whose plan is that of the line before have none of their own beyond the first thousand.
+void fill_gaps(RecordedPlans& plans, std::uint32_t frames) {
+  for (std::uint32_t frame = frames_with_own_cost + 1; frame <= frames; ++frame)
+    if (const auto before = plans.find(frame - 1); before != plans.end())
+      plans.try_emplace(frame, before->second);
+}
+
 }  // namespace
 
 void replay_plans(const std::string& run_json, Scenario& scenario) {
@@ -35,6 +43,7 @@ void replay_plans(const std::string& run_json, Scenario& scenario) {
       sensor.recorded_plans = plans_of(run.at("frames"), sensor.name);
       if (sensor.recorded_plans.empty())
         throw ConfigError("no planned frames of sensor " + sensor.name);
+      fill_gaps(sensor.recorded_plans, frames_within(sensor, scenario.duration));
       SceneFacts scene = scene_facts(sensor);
       scene.stars = !scenario.star_catalogue_path.empty();
       scene.shapes = std::ranges::any_of(scenario.own_objects, [](const OwnObject& object) {

@@ -46,8 +46,11 @@ std::vector<std::string> SensorEvaluator::consumes() const {
   const bool on_ground = std::holds_alternative<SiteConfig>(sensor_.place);
   std::vector<std::string> topics;
   if (effects.has(SpaceObjects::facts) || !on_ground ||
-      std::holds_alternative<PointTarget>(sensor_.pointing))
+      std::holds_alternative<PointTarget>(sensor_.pointing)) {
     topics.push_back(propagates() ? roster_topic : objects_topic);
+    if (propagates())
+      for (auto& topic : actor_topics(*propagated_)) topics.push_back(std::move(topic));
+  }
   topics.push_back(environment_topic);
   if (on_ground &&
       (effects.has(AtmosphericRefraction::facts) || effects.has(AirExtinction::facts) ||
@@ -80,7 +83,7 @@ void SensorEvaluator::take_in(std::span<const Message> inputs) {
       states_.emplace(objects, grid_.tick_length);
     } else if (const auto* set = std::get_if<TaskSet>(message.state.get())) {
       take_tasks(*set);
-    } else {
+    } else if (!states_ || !states_->tell(message)) {
       world_.add(message.state);
     }
   }
@@ -127,6 +130,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
     if (ready_at(next_frame_) > tick) {
       world_.forget_before(exposure_span(sensor_, pipeline_.first_frame_for(next_frame_)).start);
+      if (states_) states_->forget_before(world_.first_tick());
       break;
     }
     if (is_cued()) {

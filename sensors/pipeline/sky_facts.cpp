@@ -131,6 +131,25 @@ double from_moon_rad(const View& view, const Vec<Gcrs>& moon) {
   return nearest ? angle_rad(direction, *nearest) : 0.0;
 }
 
+/// Where twilight is brightest in a wide field on the ground, which may be between the samples:
+/// over the horizon, towards the Sun. Empty where that is not in the field.
+std::optional<PixelPosition> brightest_twilight(const View& view) {
+  constexpr double wide_rad = 10.0 * deg, over_horizon = 0.01;
+  const Optics& optics = view.sensor().camera.optics;
+  if (!view.on_ground() || half_diagonal_rad(optics) < wide_rad) return std::nullopt;
+  const SimTime middle = view.times().middle;
+  const auto enu_from_gcrs = view.enu_from_gcrs(middle);
+  Vec<Enu> sun = enu_from_gcrs * unit(view.environment().sun_m);
+  if (sun.z > over_horizon) return std::nullopt;
+  sun.z = over_horizon;
+  const auto at =
+      project(optics, view.camera_from_gcrs(middle) * enu_from_gcrs.inverse() * unit(sun));
+  if (!at || at->x_px < 0.0 || at->y_px < 0.0 || at->x_px > optics.columns - 1.0 ||
+      at->y_px > optics.rows - 1.0 || !unproject(optics, *at))
+    return std::nullopt;
+  return at;
+}
+
 }  // namespace
 
 void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
@@ -150,7 +169,7 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   StarlightByLimit starlight(view, drawn);
   const Vec<Gcrs> moon = unit(view.environment().moon_m - view.observer(middle).position_m);
   double lowest_rad = pi / 2, sampled_moon_rad = pi;
-  look_over(optics, 0.0, [&](PixelPosition at, const Vec<CameraFrame>& direction) {
+  const auto look = [&](PixelPosition at, const Vec<CameraFrame>& direction) {
     const Vec<Gcrs> gcrs = gcrs_from_camera * direction;
     if (earth.hides_direction(gcrs)) {
       f.sees_horizon = true;
@@ -171,7 +190,9 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
     s.noise_e = std::sqrt(std::max(s.sky_e + f.dark_e + read_e2, 1e-6));
     starlight.look(gcrs, s.of(SkyPart::faint_starlight));
     f.sky.push_back(s);
-  });
+  };
+  look_over(optics, 0.0, look);
+  if (const auto at = brightest_twilight(view)) look(*at, *unproject(optics, *at));
   starlight.add(f);
   if (f.sky.empty()) f.sky.push_back({.noise_e = std::sqrt(std::max(f.dark_e + read_e2, 1e-6))});
   add_disc_facts(view, f);
@@ -185,6 +206,8 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   f.sees_horizon = f.sees_horizon || lowest_rad < near_horizon_rad;
   f.cloud_detail_px = cloud_detail_px(view, lowest_rad, f.pixel_rad);
   f.most_airmass = airmass(lowest_rad);
+  f.sees_zenith = angle_rad(view.boresight(middle), view.up(middle)) <
+                  1.1 * half_diagonal_rad(optics) + moves_rad(view);
   f.zenith_extinction_mag = throughput.extinction_mag_per_airmass();
   if (const auto* gases = throughput.find<GasAbsorption>())
     f.gas_mag = gases->sunlight_mag(f.most_airmass);

@@ -1,10 +1,10 @@
 #include "sensors/pipeline/sky_layer.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
-#include "core/sky/sky_grid.h"
 #include "sensors/pipeline/throughput.h"
 
 namespace dmise {
@@ -47,21 +47,7 @@ SkyModel sky_of(const View& view, const SkyParts& parts) {
 void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& image,
                Threads& threads, GlEvaluator* evaluator = nullptr) {
   const auto& optics = view.sensor().camera.optics;
-  const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
-  const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
-  const auto earth = view.earth_occultation(view.times().middle);
-  const Throughput throughput(view);
-  const double electrons_per_photon_m2 =
-      throughput.electrons_per_photon_m2() * view.times().seconds();
-  const PixelFunction electrons = [&](double x, double y) {
-    const auto direction = unproject(optics, {x, y});
-    if (!direction) return 0.0;
-    const Vec<Gcrs> seen = gcrs_from_camera * *direction;
-    if (earth && earth->hides_direction(seen)) return 0.0;
-    return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * throughput.of_limb(seen) *
-           electrons_per_photon_m2 * pixel_solid_angle_sr(optics, {x, y}) *
-           view.illumination({x, y});
-  };
+  const PixelFunction electrons = electrons_of(view, sky);
   const int level = view.sensor().effects.level(SkyGrid::facts);
   const double tolerance = SkyGrid::tolerance[std::size_t(level)];
   if (!evaluator) {
@@ -79,6 +65,25 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
 }
 
 }  // namespace
+
+PixelFunction electrons_of(const View& view, const SkyModel& sky) {
+  const auto& optics = view.sensor().camera.optics;
+  const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
+  const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
+  const auto throughput = std::make_shared<const Throughput>(view);
+  const double electrons_per_photon_m2 =
+      throughput->electrons_per_photon_m2() * view.times().seconds();
+  return [=, &view, &optics, &sky, earth = view.earth_occultation(view.times().middle)](double x,
+                                                                                        double y) {
+    const auto direction = unproject(optics, {x, y});
+    if (!direction) return 0.0;
+    const Vec<Gcrs> seen = gcrs_from_camera * *direction;
+    if (earth && earth->hides_direction(seen)) return 0.0;
+    return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * throughput->of_limb(seen) *
+           electrons_per_photon_m2 * pixel_solid_angle_sr(optics, {x, y}) *
+           view.illumination({x, y});
+  };
+}
 
 SkyModel sky_over(const View& view, const DrawnStars& drawn) {
   return sky_of(view, parts_over(view, drawn));

@@ -1,6 +1,7 @@
 #pragma once
 #include "core/base/image.h"
 #include "core/base/parallel.h"
+#include "core/sky/sky_grid.h"
 #include "core/sky/sky_model.h"
 #include "sensors/pipeline/gl_evaluator.h"
 #include "sensors/pipeline/view.h"
@@ -11,8 +12,11 @@ namespace dmise {
 /// Moon where the environment says. Stars that are `drawn` one by one are left out.
 SkyModel sky_over(const View& view, const DrawnStars& drawn);
 
-/// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
-/// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within the tolerance of
+/// Expected electrons of a sky in a pixel: at its centre, times its own solid angle; 0 where the
+/// Earth hides it. `view` and `sky` must outlive it.
+PixelFunction electrons_of(const View& view, const SkyModel& sky);
+
+/// Fills `image` with the expected electrons of `sky_over`. From a grid, within the tolerance of
 /// `SkyGrid` at the sensor's level. All zero with the effect off. With an `evaluator` that one
 /// draws the grid.
 void fill_sky(const View& view, const DrawnStars& drawn, ExpectedElectronImage& image,

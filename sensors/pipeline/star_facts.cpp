@@ -7,6 +7,7 @@
 #include "core/config/effect_list.h"
 #include "core/effects/frame_effects.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/aberration.h"
 #include "sensors/pipeline/sky_facts.h"
 #include "sensors/pipeline/throughput.h"
 
@@ -118,9 +119,13 @@ StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f,
   const std::array<Rotation<CameraFrame, Gcrs>, 3> camera{view.camera_from_gcrs(times.start),
                                                           view.camera_from_gcrs(times.middle),
                                                           view.camera_from_gcrs(times.end)};
-  const Vec<Gcrs> aberration =
-      (1.0 / speed_of_light_m_per_s) *
-      (view.environment().earth_velocity_m_per_s + view.observer(times.middle).velocity_m_per_s);
+  // Stars are where the frame has them: an effect that is off may move one into a narrow field.
+  const EffectSet& effects = view.sensor().effects;
+  Vec<Gcrs> velocity{0, 0, 0};
+  if (effects.has(AnnualAberration::facts)) velocity += view.environment().earth_velocity_m_per_s;
+  if (effects.has(DiurnalAberration::facts))
+    velocity += view.observer(times.middle).velocity_m_per_s;
+  const Vec<Gcrs> aberration = (1.0 / speed_of_light_m_per_s) * velocity;
   constexpr double places_rad = 2.0 / 3600.0 * deg;
   const double margin_px =
       3.0 * std::hypot(1.0, f.fwhm_px) +

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 
+#include "core/base/simd_sets.h"
+
 namespace dmise {
 
 /// A place within a patch of a `StarPathGrid`: the number of its first node, and how far it is from
@@ -18,9 +20,7 @@ inline constexpr std::size_t path_values = 12;
   void interpolate_paths(const double* nodes, std::size_t across, const PatchPlace* places,       \
                          std::size_t count, double* values);                                      \
   }
-DMISE_STAR_PATH_KERNELS(sse2)
-DMISE_STAR_PATH_KERNELS(avx2)
-DMISE_STAR_PATH_KERNELS(avx512)
+DMISE_EACH_SIMD_SET(DMISE_STAR_PATH_KERNELS)
 #undef DMISE_STAR_PATH_KERNELS
 
 }  // namespace dmise

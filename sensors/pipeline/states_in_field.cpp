@@ -89,7 +89,7 @@ World StatesInField::around(const World& world, const SensorConfig& sensor,
     objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
     std::vector<ObjectStates> states;
     for (Tick tick = ticks.first; tick <= ticks.last && !objects.empty(); ++tick)
-      states.push_back(objects_->source.of_some(objects, tick, instants(world, tick)));
+      states.push_back(objects_->source.of_some(objects, tick, instants(world, tick), &told_));
     seen.set_states(std::move(objects), std::move(states));
   };
   const auto needed = needed_objects(sensor, world.roster());

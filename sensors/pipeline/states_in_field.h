@@ -27,10 +27,14 @@ std::shared_ptr<const PropagatedObjects> propagated_objects(
     const Clock& clock, const Ellipsoid& ellipsoid);
 
 /// States that a sensor propagates itself, exposure by exposure: equal to the published states to
-/// the bit, of the objects that may be in the field alone.
+/// the bit, of the objects that may be in the field alone. Those that a node moves are as it told.
 class StatesInField {
  public:
   StatesInField(std::shared_ptr<const PropagatedObjects> objects, SimTime tick_length);
+
+  /// Takes what nodes of the user's say of their objects; false for any other message.
+  bool tell(const Message& message) { return told_.add(message); }
+  void forget_before(Tick tick) { told_.forget_before(tick); }
 
   /// Returns `world`, which has ticks without states, with those that the exposure needs: of
   /// platform, target and all objects that may be in the field.
@@ -43,6 +47,7 @@ class StatesInField {
 
   std::shared_ptr<const PropagatedObjects> objects_;
   SimTime tick_length_;
+  ActorStates told_;
   std::map<Tick, StateInstants> instants_;  // of the last exposure's ticks
   std::optional<RoughPlaces> rough_;
 };

@@ -50,6 +50,8 @@ class World {
   /// Forgets what is not needed for times >= `t`.
   void forget_before(SimTime t);
 
+  /// The first tick whose states it has; 0 if it has none.
+  Tick first_tick() const { return states_.empty() ? 0 : states_.front()->tick; }
   /// Ticks that the states in [start, end] are interpolated from.
   KnotTicks ticks_for(SimTime start, SimTime end) const;
   /// Restricts the world to `objects`, ascending indices, with their states at `ticks_for` an

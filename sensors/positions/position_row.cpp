@@ -46,7 +46,7 @@ std::string csv_header(bool enu) {
 
 std::string csv_line(const PositionRow& row) {
   std::string line = std::to_string(row.tick) + "," + row.time_utc + "," + row.kind + "," +
-                     csv_field(row.name) + ",";
+                     csv_field(formula_free(row.name)) + ",";
   if (row.catalogue_number > 0) line += std::to_string(row.catalogue_number);
   if (const auto& enu = row.enu)
     line += csv_vector(std::optional(enu->position_m)) + csv_vector(enu->velocity_m_per_s) +

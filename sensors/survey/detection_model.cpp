@@ -12,14 +12,14 @@ namespace {
 
 constexpr double most_probability = 1.0 - 1e-9;
 
-struct Curve {
+struct DetectionCurve {
   double half = 1.0, spread = 1.0;
 
   double sigmas(double snr) const { return std::log(snr / half) / spread; }
 };
 
 /// Where `share` is 0 `a`, where it is 1 `b`.
-Curve mixed(const Curve& a, const Curve& b, double share) {
+DetectionCurve mixed(const DetectionCurve& a, const DetectionCurve& b, double share) {
   return {std::pow(a.half, 1.0 - share) * std::pow(b.half, share),
           a.spread + share * (b.spread - a.spread)};
 }
@@ -31,7 +31,7 @@ double way(double low, double high, double x) {
 
 double log_px(double px) { return std::log2(1.0 + px); }
 
-Curve curve_at(const std::vector<DetectionModel::Node>& nodes, double px) {
+DetectionCurve curve_at(const std::vector<DetectionModel::Node>& nodes, double px) {
   const auto after = std::upper_bound(nodes.begin(), nodes.end(), px,
                                       [](double x, const auto& node) { return x < node.px; });
   if (after == nodes.begin()) return {nodes.front().half_snr, nodes.front().spread};
@@ -46,11 +46,11 @@ double among_trails(const ExpectedTrail& trail) {
 }
 
 /// By the trail's length.
-Curve curve_of(const DetectionModel& model, const ExpectedTrail& trail) {
+DetectionCurve curve_of(const DetectionModel& model, const ExpectedTrail& trail) {
   using M = DetectionModel;
-  const Curve usual = curve_at(model.trailed, trail.length_px);
-  const Curve among_long = curve_at(model.trailed, std::max(trail.length_px, M::row_px));
-  const Curve among_round =
+  const DetectionCurve usual = curve_at(model.trailed, trail.length_px);
+  const DetectionCurve among_long = curve_at(model.trailed, std::max(trail.length_px, M::row_px));
+  const DetectionCurve among_round =
       curve_at(trail.star_known ? model.round_known : model.round, trail.length_px);
   return mixed(among_round, mixed(usual, among_long, way(M::trailed_px, M::long_px, trail.star_px)),
                among_trails(trail));

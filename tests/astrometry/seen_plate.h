@@ -12,7 +12,7 @@
 namespace dmise::test {
 
 inline const StarMap& kstars() {
-  static const StarMap map = load_star_map(catalogue_path("stars.dat"));
+  static const StarMap map = load_star_map(catalogue_path("stars.dat.gz"));
   return map;
 }
 

@@ -19,6 +19,12 @@ TEST(Formatted, HasAnyLength) {
   }
 }
 
+TEST(Counted, HasOneThingOrSeveral) {
+  EXPECT_EQ(counted(1, "sensor"), "1 sensor");
+  EXPECT_EQ(counted(0, "sensor"), "0 sensors");
+  EXPECT_EQ(counted(2, "pass", "passes"), "2 passes");
+}
+
 TEST(ShortestText, ReadsBackToTheSameBits) {
   for (const double value : {0.1, 1.0 / 3.0, 6.02e23, -5e-324, 1.7976931348623157e308})
     EXPECT_EQ(std::strtod(shortest_text(value).c_str(), nullptr), value);

@@ -20,6 +20,13 @@ TEST(CsvField, ReadsBack) {
   EXPECT_EQ(csv_fields(line), fields);
 }
 
+// Reference: OWASP, CSV Injection: cells that begin with = + - @, a tab or a carriage return.
+TEST(FormulaFree, PutsAnApostropheBeforeWhatSpreadsheetsCompute) {
+  for (const std::string text : {"=HYPERLINK(\"x\")", "+1", "-1", "@SUM(1)", "\t=1", "\r=1"})
+    EXPECT_EQ(formula_free(text), "'" + text);
+  for (const std::string text : {"", "ISS", "1=1", " =1"}) EXPECT_EQ(formula_free(text), text);
+}
+
 TEST(ParseReal, TakesWholeFiniteNumbersAlone) {
   EXPECT_EQ(parse_real("+1.5e3"), 1500.0);
   EXPECT_EQ(parse_real("-.5"), -0.5);

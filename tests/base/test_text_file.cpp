@@ -1,6 +1,7 @@
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -29,6 +30,35 @@ TEST_F(TextFile, ReadsWhatWasWrittenAndLeavesNothingElse) {
   write_file_whole(path("a"), content);
   EXPECT_EQ(read_text_file(path("a")), content);
   EXPECT_EQ(std::distance(fs::directory_iterator(directory), {}), 1);
+}
+
+TEST_F(TextFile, IsWrittenInThePlaceOfALinkWhoseTargetStays) {
+  write_file_whole(path("target"), "theirs");
+  for (const char* name : {"a", "a.partial"}) fs::create_symlink(path("target"), path(name));
+  write_file_whole(path("a"), "ours");
+  EXPECT_EQ(read_text_file(path("target")), "theirs");
+  EXPECT_EQ(read_text_file(path("a")), "ours");
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path("a"))));
+}
+
+TEST_F(TextFile, OfTheProgramItselfIsNoLinkNorFifo) {
+  write_file_whole(path("target"), "theirs");
+  fs::create_symlink(path("target"), path("link"));
+  fs::create_hard_link(path("target"), path("name"));
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  for (const char* name : {"link", "name", "fifo", "new"}) {
+    const int file = open_own_file(path(name).c_str(), O_WRONLY | O_APPEND | O_TRUNC);
+    ASSERT_GE(file, 0) << name;
+    EXPECT_EQ(write(file, "ours", 4), 4);
+    close(file);
+    EXPECT_EQ(read_text_file(path(name)), "ours");
+  }
+  EXPECT_EQ(read_text_file(path("target")), "theirs");
+  const int more = open_own_file(path("new").c_str(), O_WRONLY | O_APPEND);
+  EXPECT_EQ(write(more, " too", 4), 4);
+  close(more);
+  EXPECT_EQ(read_text_file(path("new")), "ours too");
+  EXPECT_LT(open_own_file(directory.c_str(), O_WRONLY), 0);
 }
 
 TEST_F(TextFile, ReadsGzip) {

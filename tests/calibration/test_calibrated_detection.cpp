@@ -4,11 +4,13 @@
 
 #include <cmath>
 
-#include "bench/simulated_frame.h"
 #include "core/base/error.h"
+#include "core/base/rng.h"
+#include "core/calibration/known_defects.h"
 #include "core/sky/star_cache.h"
 #include "core/wcs/wcs.h"
 #include "tests/support/data.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -34,8 +36,7 @@ struct CalibratedDetection : testing::Test {
   Threads threads{2};
 
   void SetUp() override {
-    DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
-    map = std::make_shared<const StarMap>(load_star_map(test::catalogue_path("stars.dat")));
+    map = std::make_shared<const StarMap>(load_star_map(test::catalogue_path("stars.dat.gz")));
   }
   /// The catalogue's stars by `light`, and a satellite of SNR 60.
   CountImage drawn(double light) {
@@ -180,6 +181,39 @@ TEST_F(CalibratedDetection, GoesOnWithoutStars) {
   const auto without = CalibratedDetector(nullptr).detect({drawn(1.0), truth}, threads);
   EXPECT_EQ(without.detection.detections.size(), 1u);
   EXPECT_THROW(CalibratedDetector(nullptr).detect({drawn(1.0), truth}, threads, true), Error);
+}
+
+// As of a short-wave infrared camera: a thousandth of the pixels, of which those whose charge is
+// more than the noise in the dark have no value, and the sky's level.
+TEST_F(CalibratedDetection, HotPixelsOfTheCamerasListHaveNoValue) {
+  FrameHeader h = truth;
+  h.detector.emplace();
+  h.detector->hot_pixel_fraction = 1e-3;
+  h.detector->hot_pixel_e_per_s = 5000;
+  h.sensor = "hot";
+  h.seed = 5;
+  const CountImage clean = drawn(1.0);
+  CountImage counts = clean;
+  const auto hot = static_cast<const HotPixels&>(*h.detector)
+                       .among(counts.pixels.size(), rng_key(5, "hot", 0, "hot_pixels"));
+  ASSERT_GT(hot.size(), 1000u);
+  for (const HotPixel& pixel : hot) {
+    const double more =
+        counts.pixels[pixel.pixel] + double(pixel.dark_e_per_s) * exposure_s / h.gain_e_per_dn;
+    counts.pixels[pixel.pixel] = std::uint16_t(std::min(more, 65535.0));
+  }
+  const auto calibrated = without_hot_pixels({counts, h});
+  ASSERT_TRUE(calibrated);
+  std::size_t far = 0;
+  for (const HotPixel& pixel : hot) {
+    const bool seen = double(pixel.dark_e_per_s) * exposure_s > h.read_noise_e;
+    EXPECT_EQ(calibrated->unusable.pixels[pixel.pixel], seen ? 1 : 0);
+    far +=
+        seen && std::abs(calibrated->counts.pixels[pixel.pixel] - clean.pixels[pixel.pixel]) > 300;
+  }
+  EXPECT_LT(far, hot.size() / 20);  // those on stars
+  EXPECT_FALSE(without_hot_pixels({clean, truth}));
+  expect_satellite(CalibratedDetector(map).detect({counts, h}, threads).detection);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bench/simulated_frame.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

@@ -7,7 +7,9 @@
 #include "core/config/effect_list.h"
 #include "core/config/effects_config.h"
 #include "core/config/schema.h"
+#include "core/config/yaml_reader.h"
 #include "core/effects/frame_effects.h"
+#include "core/effects/plan_facts.h"
 #include "core/optics/image_optics.h"
 
 namespace dmise {

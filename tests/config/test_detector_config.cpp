@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/config/camera_config.h"
 #include "core/config/output_config.h"
+#include "core/config/yaml_reader.h"
 #include "tests/support/detector_of.h"
 
 namespace dmise {

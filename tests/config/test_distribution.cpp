@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "core/config/yaml_reader.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 

@@ -156,7 +156,7 @@ TEST_F(OwnEarth, NonsenseIsRefused) {
   };
   const std::pair<std::string, std::string> cases[] = {
       {text(", ellipsoid: WGS48"),
-       "simulation.ellipsoid: must be one of WGS84, WGS72, GRS80, got WGS48"},
+       "simulation.ellipsoid: must be one of WGS84, WGS72, GRS80, did you mean WGS84?, got WGS48"},
       {text(", ellipsoid: [WGS84]"), "simulation.ellipsoid: "},
       {text(", elipsoid: WGS84"), "simulation.elipsoid: unknown key, did you mean ellipsoid?"},
       {text(", ellipsoid: {a_m: 0, f: 0}"), "simulation.ellipsoid.a_m: must be >= 6"},

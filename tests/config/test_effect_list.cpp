@@ -7,6 +7,7 @@
 
 #include "core/base/text_file.h"
 #include "core/config/effects_config.h"
+#include "core/config/yaml_reader.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/facet_light.h"
 #include "core/sky/air_effects.h"

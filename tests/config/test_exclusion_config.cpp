@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/config/exclusion_config.h"
 #include "core/config/scenario.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/config/optics_config.h"
+#include "core/config/yaml_reader.h"
 
 // Tables over the field and the drift of the focus in a camera's file.
 namespace dmise {

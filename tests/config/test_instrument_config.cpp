@@ -8,6 +8,7 @@
 #include "core/base/units.h"
 #include "core/config/effect_list.h"
 #include "core/config/sensor_config.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -5,16 +5,16 @@
 namespace dmise {
 namespace {
 
-TEST(SensorNames, WhatTheRunItselfUsesIsTakenInAnyCase) {
+TEST(NodeNames, WhatTheRunItselfUsesIsTakenInAnyCase) {
   for (const char* name :
        {"time-master", "broker", "orbit-node", "environment-node", "positions-node", "fusion-node",
         "operator", "host-agent", "logs", "positions", "rings", "gateway", "export", "Operator",
         "LOGS", "Positions", "Time-Master"})
-    EXPECT_TRUE(SensorNames().fault_of(name)) << name;
+    EXPECT_TRUE(NodeNames().fault_of(name)) << name;
 }
 
-TEST(SensorNames, TwoThatDifferInCaseAloneAreOneOnSomeFileSystems) {
-  SensorNames names;
+TEST(NodeNames, TwoThatDifferInCaseAloneAreOneOnSomeFileSystems) {
+  NodeNames names;
   EXPECT_FALSE(names.fault_of("alpha"));
   EXPECT_FALSE(names.fault_of("beta"));
   EXPECT_EQ(names.fault_of("alpha"), "another node has this name");
@@ -24,7 +24,7 @@ TEST(SensorNames, TwoThatDifferInCaseAloneAreOneOnSomeFileSystems) {
 
 // POSIX.1-2017, 12.2, guideline 4: what begins with - is an option. 3.282: the portable characters
 // of file names.
-TEST(SensorNames, ArePortableNamesOfFilesAndNoOptions) {
+TEST(NodeNames, ArePortableNamesOfFilesAndNoOptions) {
   for (const char* name : {"a", "A-1", "omnissa_2", "7", "_", "a-"})
     EXPECT_FALSE(fault_of_name(name)) << name;
   for (const char* name :

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/units.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -23,6 +26,15 @@ std::string complaint(const std::string& text) {
     return e.what();
   }
   return "";
+}
+
+TEST(ObjectConfig, GpredictIsAnotherNameOfDemo) {
+  setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
+  const ObjectSource demo = read("- {catalogue: demo}").catalogues.at(0),
+                     gpredict = read("- {catalogue: gpredict}").catalogues.at(0);
+  EXPECT_EQ(demo.path, DMISE_SOURCE_DIR "/launch/catalogues/demo.tle");
+  EXPECT_EQ(gpredict.path, demo.path);
+  EXPECT_EQ(gpredict.named, "demo");  // so that the run's digest is the same
 }
 
 OwnObject object(const std::string& motion, const std::string& rest = "") {
@@ -111,8 +123,9 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
             "s.yaml:2:53: objects[0].albdo: unknown key, did you mean albedo?");
   EXPECT_EQ(complaint("- {name: x, motion: {flying: {}}}"),
             "s.yaml:2:22: objects[0].motion.flying: unknown key");
-  EXPECT_EQ(complaint("- {name: x, motion: {}}"),
-            "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, enu, sgp4");
+  EXPECT_EQ(
+      complaint("- {name: x, motion: {}}"),
+      "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, enu, sgp4, node");
   EXPECT_EQ(complaint("- {name: x, motion: {track: none.csv}}"),
             "s.yaml:2:29: objects[0].motion.track: there is no such file, got none.csv");
   EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem}}"),
@@ -136,7 +149,8 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("- {name: x, motion: {sgp4: {line1: abc, line2: def}}}").substr(0, 37),
             "s.yaml:2:28: objects[0].motion.sgp4: ");
   EXPECT_EQ(complaint("- {name: x, " + fixed + ", attitude: nadr}"),
-            "s.yaml:2:63: objects[0].attitude: must be one of nadir, sun_tracking, got nadr");
+            "s.yaml:2:63: objects[0].attitude: must be one of nadir, sun_tracking, did you mean "
+            "nadir?, got nadr");
   EXPECT_EQ(
       complaint("- {name: x, " + fixed + ", attitude: {inertial: {gcrs_from_body: [0, 0, 0, 0]}}}"),
       "s.yaml:2:91: objects[0].attitude.inertial.gcrs_from_body: must be a unit quaternion [w, x, "

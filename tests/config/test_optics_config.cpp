@@ -8,6 +8,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/sky_config.h"
+#include "core/config/yaml_reader.h"
 #include "core/optics/projection.h"
 
 namespace dmise {

@@ -6,6 +6,7 @@
 #include "core/base/json.h"
 #include "core/base/whole_file.h"
 #include "core/config/object_config.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -169,6 +169,11 @@ TEST_F(ScenarioDrawsTest, EndsThatNoSensorTakesAreNamed) {
       std::string::npos);
   EXPECT_NE(of("[omnissa, raven]", "[omnissa, ravn]").find("(choice 2 of its one_of)"),
             std::string::npos);
+  for (const auto& [wrong, meant] :
+       {std::pair("{unifrom: [1, 20]}", "unifrom: unknown key, did you mean uniform?"),
+        std::pair("{one_fo: [1, 2]}", "one_fo: unknown key, did you mean one_of?"),
+        std::pair("{norml: {mean: 5, sigma: 1}}", "norml: unknown key, did you mean normal?")})
+    EXPECT_NE(of("{log_uniform: [1, 20]}", wrong).find(meant), std::string::npos) << wrong;
   EXPECT_NE(of("{log_uniform: [1, 20]}", "{normal: {mean: 5, sigma: 1}}")
                 .find("(5 sigma from the mean of its normal, which has no min)"),
             std::string::npos);

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/band_config.h"
+#include "core/config/yaml_reader.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/sky/surface_brightness.h"
@@ -91,7 +92,8 @@ TEST(SkyConfig, WaterAndTheSunsFlux) {
 
 TEST(SkyConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("sky: urbn"),
-            "s.yaml:1:6: sky: must be one of urban, suburban, dark, space, got urbn");
+            "s.yaml:1:6: sky: must be one of urban, suburban, dark, space, did you mean urban?, "
+            "got urbn");
   EXPECT_EQ(complaint("sky: {preset: urban, part: {}}"),
             "s.yaml:1:22: sky.part: unknown key, did you mean parts?");
   EXPECT_EQ(complaint("sky: {preset: urban, parts: {moonlight: off}}"),

@@ -1,5 +1,6 @@
 #include "core/config/yaml_reader.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -74,8 +75,37 @@ TEST(YamlReader, RefusesAKeyGivenTwice) {
             "s.yaml:2:5: a.b: key given twice");
 }
 
+// The parser notices these lines later: "end of map not found" at the end of the file.
+TEST(YamlReader, NamesTheLineWhereBrokenYamlBegins) {
+  const std::string words = ": not valid YAML: ";
+  const std::pair<const char*, std::string> cases[] = {
+      {"a: [1, 2\nb: 3\n", "1:4" + words + "the bracket [ is not closed"},
+      {"a: 1\nlist:\n  - {x: 1, y: {z: [2]}\n  - {x: 2}\nb: 3\n",
+       "3:5" + words + "the bracket { is not closed"},
+      {"a: {x: [1, 2}\nb: 3\n", "1:8" + words + "the bracket [ is closed by } in line 1"},
+      {"a:\n  b: 1\n\tc: 2\nd: 3\n",
+       "3:1" + words + "a tab in the indentation, which must be of spaces"},
+      {"t: |\n  {[\n# {\nq: 'it''s {'\np: a{b\nz: {y: 1\n",
+       "6:4" + words + "the bracket { is not closed"}};
+  for (const auto& [text, said] : cases)
+    EXPECT_EQ(complaint(text, [](YamlMap&) {}), "s.yaml:" + said) << text;
+  // What the scan has no opinion of is as the parser says, with a hint.
+  EXPECT_THAT(complaint("list:\n  - a: 1\n   b: 2\n", [](YamlMap&) {}),
+              testing::HasSubstr("is this line indented as those before it?"));
+}
+
+TEST(YamlReader, EveryChoiceHasASuggestion) {
+  const std::vector<std::string_view> words{"wait", "fail", "drop"};
+  EXPECT_EQ(complaint("a: wiat\n", [&](YamlMap& m) { m.require("a").choice(words); }),
+            "s.yaml:1:4: a: must be one of wait, fail, drop, did you mean wait?, got wiat");
+  EXPECT_EQ(complaint("a: offf\n", [](YamlMap& m) { m.flag_or("a", true); }),
+            "s.yaml:1:4: a: must be on or off, did you mean off?, got offf");
+  EXPECT_EQ(nearest_name("unifrom", {"uniform"}), "uniform");
+  EXPECT_EQ(nearest_name("4", {"3", "5"}), "");
+}
+
 TEST(YamlReader, ReportsBrokenYamlWithItsPlace) {
-  EXPECT_TRUE(complaint("a: [1, 2\nb: 3\n", [](YamlMap&) {}).starts_with("s.yaml:2:"));
+  EXPECT_TRUE(complaint("a: 1\n b: 3\n", [](YamlMap&) {}).starts_with("s.yaml:2:"));
   EXPECT_EQ(complaint("- 1\n", [](YamlMap&) {}), "s.yaml:1:1: must be a mapping of keys to values");
 }
 

@@ -33,7 +33,7 @@ CAMERA = ("{{optics: {{columns: 160, rows: 120, pixel_pitch_m: 9e-6, focal_lengt
           " band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}}}")
 SCENARIO = """simulation: {{start: {start}, duration_s: 10, tick_s: 10, seed: 1}}
 objects:
-  - {{catalogue: gpredict, only: [GOES 13, GOES 14, GOES 15], radius_m: {radius}}}
+  - {{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {radius}}}
 stars: {{catalogue: kstars}}
 detection: off
 accuracy: off

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/detect.h"
 #include "core/detection/detection_json.h"
+#include "tests/support/simulated_frame.h"
 
 // A frame of hard conditions with the streaks that are truly in it, and what a user expects of
 // them.

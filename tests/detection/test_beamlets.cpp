@@ -7,11 +7,11 @@
 #include <cmath>
 #include <random>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/beamlet_kernels.h"
 #include "core/detection/components.h"
 #include "core/detection/line_search.h"
 #include "tests/detection/filtered_step.h"
+#include "tests/support/simulated_frame.h"
 
 // Sums of a filtered frame along lines.
 namespace dmise {

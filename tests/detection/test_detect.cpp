@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/detection_json.h"
 #include "core/wcs/wcs.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -139,6 +139,55 @@ TEST(Detect, StreaksAreUnbiasedAndTheirCovarianceHonest) {
   EXPECT_GT(end_nees / n, 0.85);
   EXPECT_LT(end_nees / n, 1.15);
   EXPECT_NEAR(density / n, 1.0, 0.01);
+}
+
+/// Mean square of the errors of long streaks' centroids along themselves, over their variances.
+struct AlongItself {
+  int drawn = 0, found = 0;
+  double ratio2 = 0.0;
+};
+
+AlongItself errors_along(double e_per_px, double length_px, unsigned seed) {
+  constexpr int columns = 1600, rows = 1000;
+  AlongItself all;
+  for (unsigned frames = 0; all.drawn < 60; ++frames) {
+    const auto header = camera_header(columns, rows, all_sky_focal_px, declination, 0.1, false);
+    SimulatedFrame frame(header, columns, rows, sky_e, seed + frames);
+    std::vector<Placed> places;
+    std::vector<double> angles;
+    for (int row = 0; row < 5; ++row)
+      for (double x = 0.7 * length_px; x + 0.7 * length_px < columns; x += 1.4 * length_px) {
+        places.push_back({x + frame.uniform(-.5, .5), 100 + 200 * row + frame.uniform(-.5, .5)});
+        angles.push_back(frame.uniform(-0.1, 0.1));
+        const double own_px = frame.uniform(0.8, 1.2) * length_px;
+        frame.add_streak(places.back().x, places.back().y, own_px, angles.back(),
+                         e_per_px * own_px);
+      }
+    Threads threads(2);
+    const auto result = detect(frame.expose(), header, {}, threads);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      ++all.drawn;
+      const Detection* d = nearest(result.detections, places[i], 12.0);
+      if (!d) continue;
+      const double c = std::cos(angles[i]), s = std::sin(angles[i]);
+      const double along = (d->x_px - places[i].x) * c + (d->y_px - places[i].y) * s;
+      const auto [xx, xy, yy] = d->covariance_px2;
+      all.ratio2 += along * along / (xx * c * c + 2 * xy * c * s + yy * s * s);
+      ++all.found;
+    }
+  }
+  all.ratio2 /= std::max(all.found, 1);
+  return all;
+}
+
+// 60 straight streaks each: the mean square of normal errors is known to 0.18.
+TEST(Detect, LongStreaksErrorsAlongThemselvesAreAsStated) {
+  unsigned seed = 300;
+  for (const double e_per_px : {150.0, 1000.0}) {
+    const AlongItself all = errors_along(e_per_px, 400.0, seed += 20);
+    EXPECT_GE(all.found, all.drawn - 1) << e_per_px;
+    EXPECT_LT(all.ratio2, 1.0 + 3 * 0.18) << e_per_px;
+  }
 }
 
 // The all-sky camera of 3326 x 2504 pixels, 15,000 trailed stars, nothing else.

@@ -5,14 +5,15 @@
 
 #include <cmath>
 
-#include "bench/simulated_frame.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/detection/detection_lines.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
+#include "core/products/frame_report.h"
 #include "tests/support/detect_frame.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

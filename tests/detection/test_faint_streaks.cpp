@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/detect.h"
+#include "tests/support/simulated_frame.h"
 
 // Streaks of which no pixel stands out of the noise.
 namespace dmise {

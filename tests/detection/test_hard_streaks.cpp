@@ -104,6 +104,99 @@ TEST(HardStreaks, ATumblingOneIsFoundFromEndToEnd) {
 TEST(HardStreaks, ABentOneIsOneWithItsEnds) { expect_bent_streak(2); }
 
 // A row or a column of pixels with a star, a streak along it and a full pixel.
+/// A streak of even light across, `width_px` wide and of 10 sigma of the noise in each pixel.
+void add_broad(HardFrame& scene, const TrueStreak& s, double width_px) {
+  const double e_per_px2 = 10 * std::hypot(std::sqrt(HardFrame::sky_e), 9.3);
+  scene.change([&](double e, int x, int y) {
+    const PixelPosition at{double(x), double(y)};
+    const bool lit =
+        std::abs(s.across(at)) < width_px / 2 && std::abs(s.along(at)) < s.length_px / 2;
+    return e + (lit ? e_per_px2 : 0.0);
+  });
+}
+
+// Out of focus, as large telescopes see low orbits.
+TEST(HardStreaks, ABroadOneIsOne) {
+  for (const double width_px : {5.0, 7.0, 10.0, 14.0})
+    for (const double length_px : {240.0, 2000.0})
+      for (const double angle : {0.0, 0.4, 1.3, 2.4}) {
+        SCOPED_TRACE(testing::Message() << width_px << " x " << length_px << " px at " << angle);
+        HardFrame scene(512, 512, 32);
+        scene.frame.add_stars(120, 100, 20000);
+        const TrueStreak broad{256, 256, length_px, angle, 0.0};
+        add_broad(scene, broad, width_px);
+        const auto found = scene.detected().detections;
+        EXPECT_EQ(found.size(), 1u);
+        if (found.empty()) continue;
+        EXPECT_EQ(found[0].kind, DetectionKind::streak);
+        EXPECT_LT(std::abs(broad.across({found[0].x_px, found[0].y_px})), 1.5);
+        if (length_px < 500) {
+          EXPECT_NEAR(found[0].length_px, length_px, 10);
+          EXPECT_NEAR(broad.along({found[0].x_px, found[0].y_px}), 0.0, 5.0);
+        } else {
+          EXPECT_GT(found[0].length_px, 490);
+        }
+      }
+}
+
+// Of an SNR of up to 2,000, brighter or fainter by 40 % each 4 px.
+TEST(HardStreaks, ABrightOneThatFlickersIsFound) {
+  for (const double e_per_px : {1000.0, 5000.0, 25000.0}) {
+    HardFrame scene(600, 600, 33);
+    const TrueStreak whole{300, 300, 120, 0.4, 120 * e_per_px};
+    std::normal_distribution<double> normal(1.0, 0.4);
+    for (double along = -58; along < 60; along += 4) {
+      const PixelPosition at = whole.at(along);
+      const double light = std::clamp(normal(scene.frame.random()), 0.3, 1.7);
+      scene.frame.add_streak(at.x_px, at.y_px, 4, 0.4, 4 * e_per_px * light);
+    }
+    const auto found = scene.detected().detections;
+    ASSERT_EQ(found.size(), 1u) << e_per_px;
+    EXPECT_LT(std::abs(whole.across({found[0].x_px, found[0].y_px})), 0.3);
+    EXPECT_NEAR(found[0].length_px, 120, 6);
+  }
+}
+
+// An exponential disc that is 3 times as wide as the PSF, from too faint to be seen to an SNR
+// of 60.
+TEST(HardStreaks, AGalaxyFromItsSideIsNoStreak) {
+  int seen = 0;
+  for (const double e_per_px2 : {12.0, 20.0, 30.0, 50.0, 100.0})
+    for (int i = 0; i < 4; ++i) {
+      HardFrame scene(400, 400, unsigned(60 + i));
+      const TrueStreak galaxy{200, 200, 40, 0.3 + 0.7 * i, 0.0};
+      scene.change([&](double e, int x, int y) {
+        const PixelPosition at{double(x), double(y)};
+        const double across = galaxy.across(at) / 2.3;
+        return e + e_per_px2 * std::exp(-std::abs(galaxy.along(at)) / 7 - 0.5 * across * across);
+      });
+      for (const Detection& d : scene.detected().detections)
+        if (d.kind == DetectionKind::streak) ++seen;
+    }
+  EXPECT_EQ(seen, 0);
+}
+
+// The greatest of each pixel's counts in 8 frames, in each of which an eighth of the way is lit.
+TEST(HardStreaks, OneInAPlaneOfMaximaIsFound) {
+  const TrueStreak whole{300, 300, 160, 0.4, 160 * 5000.0};
+  CountImage most(600, 600);
+  FrameHeader header;
+  for (int i = 0; i < 8; ++i) {
+    HardFrame scene(600, 600, unsigned(40 + i));
+    const PixelPosition at = whole.at(-70 + 20 * i);
+    scene.frame.add_streak(at.x_px, at.y_px, 20, 0.4, whole.flux_e / 8);
+    const CountImage counts = scene.frame.expose();
+    header = scene.frame.header();
+    for (std::size_t k = 0; k < most.pixels.size(); ++k)
+      most.pixels[k] = std::max(most.pixels[k], counts.pixels[k]);
+  }
+  Threads threads(2);
+  const auto found = detect(most, header, {}, threads).detections;
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_LT(std::abs(whole.across({found[0].x_px, found[0].y_px})), 0.3);
+  EXPECT_NEAR(found[0].length_px, 160, 4);
+}
+
 TEST(HardStreaks, FramesOfOneRowOrColumnGiveFiniteNumbers) {
   for (const auto& [columns, rows] : {std::pair{3000, 1}, {1, 3000}, {3000, 2}, {1, 1}, {2, 2}}) {
     HardFrame scene(columns, rows, 10);

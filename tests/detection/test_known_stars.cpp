@@ -4,9 +4,9 @@
 #include <memory>
 #include <random>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/detect.h"
 #include "core/wcs/wcs.h"
+#include "tests/support/simulated_frame.h"
 
 // Detection with a catalogue of stars: what is in it is no satellite, what is not is no star.
 namespace dmise {

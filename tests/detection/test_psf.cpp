@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/detect.h"
 #include "core/detection/trail_light.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "bench/simulated_frame.h"
 #include "core/detection/components.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

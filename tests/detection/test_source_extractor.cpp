@@ -4,12 +4,12 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "bench/simulated_frame.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/detection/detect.h"
 #include "core/image/fits_file.h"
 #include "tests/support/data.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/simulated_frame.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/detector/expose.h"
+#include "core/effects/plan_facts.h"
 #include "tests/support/detector_of.h"
 
 namespace dmise {

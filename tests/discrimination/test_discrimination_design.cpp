@@ -6,6 +6,7 @@
 
 #include "core/config/camera_config.h"
 #include "core/config/material_config.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds every include line against docs/layers.toml: a directory includes only what stands in its entry, all of
-which stands above it, and nothing stands there that it does not include.
+which stands above it, and nothing stands there that it does not include. No more sources see a header that is slow to
+compile, by way of others or not, than stand there.
 
     layers.py            exits 1 and names what is wrong
     layers.py --write    writes the table of docs/architecture.md anew
@@ -31,8 +32,19 @@ def sources():
                 yield path
 
 
-def read():
-    return tomllib.loads(LAYERS.read_text())["layer"]
+def read(rows="layer"):
+    return tomllib.loads(LAYERS.read_text())[rows]
+
+
+def who_sees(header):
+    """The sources that include a header, directly or by others."""
+    by_file = {str(path.relative_to(ROOT)): set(INCLUDE.findall(path.read_text())) for path in sources()}
+    seeing, wanted = set(), {header}
+    while wanted:
+        found = {name for name, includes in by_file.items() if includes & wanted} - seeing
+        seeing |= found
+        wanted = {name for name in found if name.endswith(".h")}
+    return sorted(name for name in seeing if name.endswith(".cpp"))
 
 
 def faults(layers):
@@ -86,6 +98,10 @@ def main():
         DOCUMENT.write_text(text)
         return 0
     wrong = list(faults(layers))
+    for row in read("slow"):
+        if len(seeing := who_sees(row["header"])) > row["sources"]:
+            wrong.append(f"{len(seeing)} sources see {row['header']}, more than the {row['sources']} of docs/layers.toml: "
+                         "declare its types forward in headers")
     if text != DOCUMENT.read_text():
         wrong.append("docs/architecture.md has not the table of docs/layers.toml: run tests/docs/layers.py --write")
     print("\n".join(wrong) or f"ok: {len(layers)} directories, no circle, no include line beside them")

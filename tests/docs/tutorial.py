@@ -36,8 +36,8 @@ def height_km(line1, line2, when):
 def elements(binary, name):
     """The two lines of an object of the catalogue that the page names."""
     listed = subprocess.run([binary, "list", "catalogues"], capture_output=True, text=True, check=True).stdout
-    text = pathlib.Path(re.search(r"(\S+satellites\.dat)", listed)[1]).read_text()
-    return re.search(rf"^NAME={name}\n(?:NICKNAME=.*\n)?TLE1=(.*)\nTLE2=(.*)$", text, re.M).groups()
+    text = pathlib.Path(re.search(r"(\S+demo\.tle)", listed)[1]).read_text()
+    return re.search(rf"^{name}\n(1 .*)\n(2 .*)$", text, re.M).groups()
 
 
 def main():
@@ -54,11 +54,16 @@ def main():
         out = pathlib.Path(name)
         for file in ("out/night/index.html", "out/night/west/frame-000001.fits", "out/night/detections.jsonl", "out/tdm"):
             check((out / file).exists(), f"they write {file}")
+        errors = (out / "score.txt").read_text().partition("errors of clean detections")[2].splitlines()[2:]
+        check(errors and re.search(r" [1-9][0-9]* ", errors[0]), f"the table of errors has rows: {errors[:1]}")
         found = re.findall(r"^(.*): ([0-9.]+) km above the Earth$", (out / "track.txt").read_text(), re.M)
         check(len(found) >= 3, f"the tracker has {len(found)} places")
         line1, line2 = elements(binary, "FENGYUN 3A")
         worst = max(abs(float(km) - height_km(line1, line2, datetime.datetime.fromisoformat(when.replace("Z", "+00:00"))))
                     for when, km in found)
+        low, high = map(float, re.search(r"heights of ([0-9.]+) to ([0-9.]+) km", page).groups())
+        printed = [float(km) for _, km in found]
+        check(low - 1 < min(printed) and max(printed) < high + 1, f"the page says what it prints: {min(printed)} to {max(printed)} km")
         check(worst < WITHIN_KM, f"within {worst:.2f} km of the height of python3-sgp4")
 
 

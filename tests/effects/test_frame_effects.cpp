@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/effects/plan_facts.h"
 #include "core/optics/stray_light.h"
 #include "core/sky/earth_disc.h"
 #include "core/sky/limb_air.h"

@@ -37,7 +37,7 @@ except (ImportError, AttributeError) as missing:
     sys.exit(77)
 
 SCENARIO = """simulation: {start: 2018-01-21T00:15:00Z, duration_s: 60, tick_s: 5, seed: 1}
-objects: [{catalogue: gpredict}]
+objects: [{catalogue: demo}]
 stars: {catalogue: kstars}
 sensors:
   - {name: metop, platform: "29499", camera: wide-field-cmos, pointing: {ra_deg: 85.2, dec_deg: 0.7}, exposure_s: 2, cadence_s: 15, sky: space}
@@ -123,7 +123,7 @@ def check_quietly(holds, claim):
 def read_omm(path):
     from skyfield_directions import read_elements
     import referee
-    elements = read_elements(referee.CATALOGUES / "satellites.dat")
+    elements = read_elements(referee.CATALOGUES / "demo.tle")
     check(len(NdmIo().from_path(path["omm", "truth"]).omm) == len(elements), f"ccsds-ndm reads {len(elements)} OMM")
     worst, count = 0.0, 0  # its epochs of OMM are days since 1949 in a double: 0.3 us, 2.4 mm
     for fields in sgp4.omm.parse_xml(open(path["omm", "truth"], encoding="utf-8")):

@@ -125,6 +125,23 @@ TEST(ExportFormat, MessagesThatNeedASegmentRefuseAnEmptyRun) {
   EXPECT_THROW(exported("omm", {run, ProductKind::truth, {}}), ConfigError);
 }
 
+// Reference: OWASP, CSV Injection: cells that begin with = + - @, a tab or a carriage return.
+TEST(ExportFormat, CsvHasNoFormulasForSpreadsheets) {
+  RunProducts run = small_run();
+  run.directory = testing::TempDir() + "/formulas-" + std::to_string(getpid());
+  std::filesystem::create_directories(run.directory);
+  std::ofstream(run.directory + "/detections.jsonl")
+      << R"json({"sensor":"eye","frame":7,"a":"=HYPERLINK(\"http://x\")","b":"+1","c":"@SUM(1)",)json"
+      << R"json("d":"\t=1","e":"-2","f":-2.5,"g":"5-2","=1+1":1})json"
+      << "\n";
+  std::ofstream(run.directory + "/frames.jsonl") << "";
+  const auto files = exported("csv", {run, ProductKind::detections, {}});
+  EXPECT_EQ(files[0].content,
+            "sensor,frame,a,b,c,d,e,f,g,'=1+1\r\n"
+            "eye,7,\"'=HYPERLINK(\"\"http://x\"\")\",'+1,'@SUM(1),'\t=1,'-2,-2.5,5-2,1\r\n");
+  std::filesystem::remove_all(run.directory);
+}
+
 // Reference: RFC 4180 2.5 to 2.7.
 TEST(ExportFormat, CsvQuotesAndLeavesOutOtherSensors) {
   RunProducts run = small_run();

@@ -17,7 +17,7 @@ struct Row {
 };
 
 // Reference: skyfield's (satellite - site).at(t), tests/reference/site_satellite.py on the element
-// sets of Debian's gpredict; site 33.777 N, 84.398 W, 300 m, no polar motion.
+// sets of `catalogue: demo`; site 33.777 N, 84.398 W, 300 m, no polar motion.
 const Row rows[] = {
     // clang-format off
     {"2018-01-21T00:00:12.500Z", 0.206793902, {942376.371151, 2840340.561688, 6171525.409519}, 3.220042280804, 0.668044599139, 4279983.2624, 0.430756699892, -0.216670702252},

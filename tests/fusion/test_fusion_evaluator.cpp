@@ -7,11 +7,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "bench/fusion_trial.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/make_clock.h"
 #include "core/orbit/synthetic_catalogue.h"
+#include "core/products/frame_report.h"
+#include "tests/support/fusion_trial.h"
 
 namespace dmise {
 namespace {

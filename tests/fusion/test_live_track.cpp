@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "bench/tracking_trial.h"
 #include "core/base/units.h"
 #include "core/tracking/initial_orbit.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

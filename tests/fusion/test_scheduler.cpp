@@ -9,11 +9,11 @@
 #include <map>
 #include <optional>
 
-#include "bench/cue_trial.h"
 #include "core/base/units.h"
 #include "core/orbit/two_body.h"
 #include "core/tracking/predict.h"
 #include "core/tracking/propagate.h"
+#include "tests/support/cue_trial.h"
 
 namespace dmise {
 namespace {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/units.h"
+#include "core/products/frame_report.h"
 
 namespace dmise {
 namespace {
@@ -56,6 +57,20 @@ TEST(SensorFrame, NoDirectionIsBetterThanWhatDetectionsDoNotKnow) {
   EXPECT_NEAR(disc[0], 0.04 * arcsec * arcsec, 1e-9 * arcsec * arcsec);
   EXPECT_NEAR(disc[1], 0, 1e-9 * arcsec * arcsec);
   EXPECT_NEAR(disc[2], 0.04 * arcsec * arcsec, 1e-9 * arcsec * arcsec);
+}
+
+// Errors that detections do not know of add to theirs on every axis.
+TEST(SensorFrame, AStatedErrorOfPointingAddsToEveryDirection) {
+  const double unit = arcsec * arcsec;
+  Detection d;
+  d.id = "eye/3/1";
+  d.covariance_rad2 = {0.09 * unit, 0.02 * unit, 0.16 * unit};
+  d.sensor_position_m = {6.4e6, 0, 0};
+  const auto taken =
+      sensor_frame(towards_aries(), {d}, 1000, 1000, 7.1 * deg, 2 * arcsec).sources.at(0);
+  EXPECT_NEAR(taken.observation.covariance_rad2[0], 4.09 * unit, 1e-9 * unit);
+  EXPECT_NEAR(taken.observation.covariance_rad2[1], 0.02 * unit, 1e-9 * unit);
+  EXPECT_NEAR(taken.observation.covariance_rad2[2], 4.16 * unit, 1e-9 * unit);
 }
 
 // Half of the best at the limit; one standard deviation of the normal distribution beside it.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "bench/tracking_trial.h"
 #include "core/base/units.h"
 #include "core/tracking/propagate.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

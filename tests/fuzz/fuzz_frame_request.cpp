@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/products/frame_report.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/kept_frames.h"
 #include "tests/fuzz/chunks.h"

@@ -1,4 +1,5 @@
 // What viewers are told of a run.
+#include "core/products/frame_report.h"
 #include "nodes/gateway/live_view.h"
 
 #include <erfa.h>

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/image/fits_file.h"
 #include "core/pictures/picture_file.h"
+#include "core/products/frame_report.h"
 #include "nodes/gateway/frame_previews.h"
 #include "nodes/runtime/node/frame_server.h"
 #include "nodes/runtime/transport/socket.h"

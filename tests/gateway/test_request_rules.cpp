@@ -125,5 +125,29 @@ TEST(Cookies, AreFoundByTheirName) {
     EXPECT_EQ(cookie_value(cookies, "dmise_token"), "") << cookies;
 }
 
+TEST(Cookies, OfServersOnOtherPortsOfAHostHaveOtherNames) {
+  EXPECT_EQ(cookie_name("view.example:8080"), "dmise_token_8080");
+  EXPECT_EQ(cookie_name("127.0.0.1:8081"), "dmise_token_8081");
+  EXPECT_EQ(cookie_name("[::1]:8081"), "dmise_token_8081");
+  for (const char* host : {"", "view.example", "[::1]", "a:", "a:b", "a:80;x", "a:123456"})
+    EXPECT_EQ(cookie_name(host), "dmise_token") << host;
+}
+
+TEST(Targets, KeepAllButTheirToken) {
+  EXPECT_EQ(without_token("/?token=" + viewer), "/");
+  EXPECT_EQ(without_token("/frames/a%20b/2.png?token=" + viewer), "/frames/a%20b/2.png");
+  EXPECT_EQ(without_token("/?a=b&token=" + viewer + "&c=d"), "/?a=b&c=d");
+}
+
+// RFC 9110, 12.5.3.
+TEST(Encodings, AdmitGzip) {
+  for (const char* encodings :
+       {"gzip", "gzip, deflate, br, zstd", "br;q=1.0, gzip;q=0.8", "deflate ,gzip ; q=0.001"})
+    EXPECT_TRUE(takes_gzip(encodings)) << encodings;
+  for (const char* encodings :
+       {"", "identity", "br, deflate", "gzip;q=0", "gzip; q=0.000", "xgzip"})
+    EXPECT_FALSE(takes_gzip(encodings)) << encodings;
+}
+
 }  // namespace
 }  // namespace dmise

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <thread>
 
 #include "core/base/error.h"
 
@@ -38,11 +39,14 @@ struct OnePreview : PreviewSource {
   std::promise<Answer> late;
 };
 
+constexpr std::size_t large_bytes = 6 << 20;
+
 std::string dashboard() {
   const std::string directory = testing::TempDir() + "/dmise-dashboard";
   std::filesystem::create_directories(directory + "/assets");
   std::ofstream(directory + "/index.html") << "<html>dashboard</html>";
   std::ofstream(directory + "/assets/a.js") << "1;";
+  std::ofstream(directory + "/assets/large.js") << std::string(large_bytes, ';');
   return directory;
 }
 
@@ -90,6 +94,15 @@ struct Site {
   std::atomic<bool> busy{false};
   WebServer server;
 };
+
+tcp::socket connected(boost::asio::io_context& io, const Site& site) {
+  tcp::socket socket(io, tcp::v4());
+  socket.set_option(boost::asio::socket_base::receive_buffer_size(32 << 10));
+  socket.connect({boost::asio::ip::address_v4::loopback(), std::uint16_t(site.server.port())});
+  return socket;
+}
+
+const std::string ask_for_large = "GET /assets/large.js HTTP/1.0\r\nHost: localhost\r\n\r\n";
 
 /// A WebSocket of a program, not a browser.
 struct Watcher {
@@ -300,6 +313,83 @@ TEST(WebServer, ThePastIsShownUntilTheViewerGoesBackToTheRun) {
   EXPECT_EQ(watcher.read(), "later status");  // health goes on
   watcher.write(R"({"do": "live"})");
   EXPECT_EQ(watcher.read(), "later sensors");
+}
+
+TEST(WebServer, SilentConnectionsLockNobodyOut) {
+  Site site({.tokens = {viewer, operator_, referee}, .may_control = true, .most_connections = 8});
+  Watcher watcher(site, "/live?token=" + viewer);
+  watcher.read();
+  boost::asio::io_context io;
+  std::vector<tcp::socket> silent;
+  for (int i = 0; i < 40; ++i) silent.push_back(connected(io, site));
+  Watcher controller(site, "/live?token=" + operator_);
+  EXPECT_THAT(controller.read(), HasSubstr("\"may_control\":true"));
+  EXPECT_THAT(site.get("/", "Cookie: dmise_token=" + operator_ + "\r\n"),
+              StartsWith("HTTP/1.1 200"));
+  for (int i = 0; i < 40; ++i) silent.push_back(connected(io, site));
+  watcher.write("nonsense");  // who was let in keeps its place
+  EXPECT_THAT(watcher.read(), HasSubstr("refused"));
+  controller.write("nonsense");
+  EXPECT_THAT(controller.read(), HasSubstr("refused"));
+}
+
+TEST(WebServer, ASlowLineGetsTheWholeFile) {
+  constexpr double request_within_s = 1.0;
+  Site site({.most_connections = 1, .request_within_s = request_within_s});
+  boost::asio::io_context io;
+  tcp::socket slow = connected(io, site);
+  boost::asio::write(slow, boost::asio::buffer(ask_for_large));
+  std::string part(64 << 10, '\0');
+  std::size_t received = 0;
+  boost::system::error_code end;
+  const auto began = std::chrono::steady_clock::now();
+  while (!end) {
+    received += slow.read_some(boost::asio::buffer(part), end);
+    std::this_thread::sleep_for(std::chrono::milliseconds(received < large_bytes / 2 ? 30 : 0));
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  EXPECT_GT(took.count(), request_within_s);
+  EXPECT_GT(received, large_bytes);
+  // Who reads nothing loses its place.
+  tcp::socket deaf = connected(io, site);
+  boost::asio::write(deaf, boost::asio::buffer(ask_for_large));
+  while (!site.get("/").starts_with("HTTP/1.1 200")) continue;
+}
+
+TEST(WebServer, CompressesFilesForWhoAcceptsIt) {
+  const Site site;
+  const std::string small = site.get("/assets/large.js", "Accept-Encoding: gzip, br\r\n");
+  EXPECT_THAT(small, HasSubstr("Content-Encoding: gzip"));
+  EXPECT_THAT(small, HasSubstr("Vary: Accept-Encoding"));
+  EXPECT_LT(small.size(), large_bytes / 100);
+  const std::string whole = site.get("/assets/large.js");
+  EXPECT_THAT(whole.substr(0, 1000), Not(HasSubstr("Content-Encoding")));
+  EXPECT_GT(whole.size(), large_bytes);
+  const auto etag_of = [](const std::string& answer) {
+    const auto at = answer.find("ETag: ") + 6;
+    return answer.substr(at, answer.find('\r', at) - at);
+  };
+  EXPECT_NE(etag_of(small), etag_of(whole));
+  EXPECT_THAT(site.get("/assets/large.js",
+                       "Accept-Encoding: gzip\r\nIf-None-Match: " + etag_of(small) + "\r\n"),
+              StartsWith("HTTP/1.1 304"));
+}
+
+TEST(WebServer, CookiesOfTwoServersOnAHostDoNotReplaceEachOther) {
+  Site site({.tokens = {viewer, operator_, referee}});
+  const std::string ours = "localhost:" + std::to_string(site.server.port());
+  const std::string moved = site.get("/?token=" + viewer, "", ours);
+  const std::string cookie = "dmise_token_" + std::to_string(site.server.port()) + "=";
+  EXPECT_THAT(moved, HasSubstr("Set-Cookie: " + cookie + viewer + ";"));
+  const std::string both = "Cookie: dmise_token_1=" + std::string(16, 'x') + "; " + cookie + viewer;
+  EXPECT_THAT(site.get("/", both + "\r\n", ours), StartsWith("HTTP/1.1 200"));
+}
+
+TEST(WebServer, ATokenInTheAddressOfAFrameKeepsItsPath) {
+  Site site({.tokens = {viewer, operator_, referee}});
+  EXPECT_THAT(site.get("/frames/alpha/2.png?token=" + viewer),
+              HasSubstr("Location: /frames/alpha/2.png\r\n"));
+  EXPECT_THAT(site.get("/?token=" + viewer), HasSubstr("Location: /\r\n"));
 }
 
 TEST(WebServer, BoundsConnectionsAndMessages) {

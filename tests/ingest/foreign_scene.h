@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/simulated_frame.h"
 #include "core/image/card_text.h"
 #include "core/ingest/any_frame.h"
 #include "tests/ingest/foreign_file.h"
 #include "tests/support/detect_frame.h"
+#include "tests/support/simulated_frame.h"
 
 // A simulated scene, and the same as a file of another camera.
 namespace dmise::test {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "core/base/error.h"
 #include "core/detection/star_motion.h"
@@ -262,6 +264,85 @@ TEST(AnyFrame, MeasuresTheGainWhereLevelsSpanEnough) {
   EXPECT_FALSE(frame.header.unknown.has(FrameFact::gain));
   EXPECT_NEAR(frame.header.gain_e_per_dn, 0.5, 0.02);
   EXPECT_THAT(frame.notes.assumed, Contains(HasSubstr("gain: ")));
+}
+
+// A camera's setting in GAIN is no gain: the sky's noise says what is.
+TEST(AnyFrame, ASettingInGainIsNoGain) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  CountImage counts(1000, 1000);
+  for (int y = 0; y < 1000; ++y)
+    for (int x = 0; x < 1000; ++x) {
+      const double e = 400 + 4 * x;
+      counts.at(x, y) = std::uint16_t(
+          std::lround(100 + (e + std::hypot(std::sqrt(e), 5) * normal(random)) / 0.5));
+    }
+  for (const char* setting : {"1", "10", "20"}) {
+    const Frame frame = read_one(image_of(counts, {card("GAIN", setting)}));
+    EXPECT_NEAR(frame.header.gain_e_per_dn, 0.5, 0.02) << setting;
+    EXPECT_THAT(frame.notes.assumed, Contains(HasSubstr("gain: "))) << setting;
+    EXPECT_THAT(frame.notes.missing, Contains(HasSubstr(std::string("got ") + setting)));
+  }
+  const Frame stated = read_one(image_of(counts, {card("GAIN", "0.5")}));
+  EXPECT_EQ(stated.header.gain_e_per_dn, 0.5);
+  EXPECT_THAT(stated.notes.assumed, Contains(HasSubstr("gain: GAIN = 0.5 is taken for")));
+}
+
+// Of an MJD with three decimals no text claims a time within its 86 s.
+TEST(AnyFrame, TimesHaveNoDigitsThatNobodyKnows) {
+  const Scene scene = draw(false, 4);
+  const Frame frame =
+      read_one(image_of(scene.counts, {card("MJD-OBS", "58139.043"), card("EXPTIME", "4.0")}));
+  EXPECT_EQ(frame.header.start_utc, "2018-01-21T01:01:55Z");
+  EXPECT_THAT(frame.notes.assumed, Contains(HasSubstr("the last digit of MJD-OBS is 86.4 s")));
+  EXPECT_EQ(detections_in(frame).size(), 2u);
+}
+
+/// Noise, slopes, waves, clipped and single bright pixels, lines of light, pixels without a value.
+ForeignImage small_frame(std::mt19937_64& random) {
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const int wide = int(uniform(1, 65)), high = int(uniform(1, 65)), kind = int(uniform(0, 9));
+  const double sigma = std::pow(10, uniform(-1, 2)), by_x = uniform(-20, 20),
+               by_y = uniform(-20, 20), turn = uniform(0, 3.14), off = uniform(-20, 20),
+               width = uniform(0.5, 3), light = std::pow(10, uniform(1.5, 4.5));
+  std::normal_distribution<double> normal(1000, sigma);
+  ForeignImage image{.bitpix = FLOAT_IMG,
+                     .shape = {wide, high},
+                     .values = {},
+                     .cards = {card("DATE-OBS", "'2021-05-01T04:00:00'"), card("EXPTIME", "2.0")}};
+  for (int y = 0; y < high; ++y)
+    for (int x = 0; x < wide; ++x) {
+      const double across =
+          (y - high / 2.0) * std::cos(turn) - (x - wide / 2.0) * std::sin(turn) - off;
+      double v = kind == 0 ? 1000.0 : normal(random);
+      if (kind == 1) v += by_x * x + by_y * y;
+      if (kind == 2) v = 65535.0;
+      if (kind == 3 && uniform(0, 1) < 0.3) v = NAN;
+      if (kind == 4 && uniform(0, 1) < 0.2) v = 65535.0;
+      if (kind == 5 && uniform(0, 1) < 0.01) v += light;
+      if (kind == 6) v += 500 * std::sin(0.02 * by_x * x + 0.02 * by_y * y);
+      if (kind == 7) v += light * std::exp(-0.5 * across * across / (width * width));
+      image.values.push_back(v);
+    }
+  image.values[0] = 1000.0;
+  if (kind == 8) image.values[image.values.size() / 2] = 60000.0;
+  return image;
+}
+
+// Of processor time, so that a busy machine does not count; without a bound on fitted lengths such
+// frames took minutes.
+TEST(AnyFrame, SmallFramesOfAnyKindAreSearchedInAMoment) {
+  constexpr double most_s = 5.0;
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 200; ++i) {
+    const ForeignImage image = small_frame(random);
+    const std::clock_t begin = std::clock();
+    detections_in(read_one(image));
+    EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, most_s)
+        << i << ": " << image.shape[0] << " x " << image.shape[1];
+  }
 }
 
 TEST(AnyFrame, IsTheSameForAnyNumberOfThreads) {

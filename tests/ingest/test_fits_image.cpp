@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cmath>
 
@@ -57,6 +58,74 @@ TEST(FitsImage, ScalesByBscaleAndBzero) {
                                                 .bscale = 0.25,
                                                 .bzero = -10}));
   EXPECT_EQ(values, ramp(1, 0.25));
+}
+
+/// A file with one more card, before END.
+std::string with_card(std::string bytes, std::string card) {
+  card.resize(80, ' ');
+  const std::string end = "END" + std::string(77, ' ');
+  bytes.replace(bytes.find(end), 160, card + end);
+  return bytes;
+}
+
+TEST(FitsImage, ReadsHeadersThatAreNotPrintableAndNamesTheirCards) {
+  const std::string good = encoded(ForeignImage{.shape = {columns, rows}, .values = ramp()});
+  for (const auto& [card, note] : std::vector<std::pair<std::string, std::string>>{
+           {"CCD-TEMP=                -10.0 / chip temperature, \xb0"
+            "C",
+            "CCD-TEMP: bytes"},
+           {"OBSERVER= 'Pe\xc3\xb1"
+            "a'",
+            "OBSERVER: bytes"},
+           {"HISTORY made\twith a tab", "HISTORY: bytes"},
+           {std::string("COMMENT a\0byte", 14), "COMMENT: bytes"},
+           {"BZERO   = 0." + std::string(40, '0'), "BZERO: a long number"},
+           {"SKEW    = (1.0, 2.0)           / complex", ""},
+           {"COMMENT ========================= camera =========================", ""},
+           {"LONGNUM = 3.14159265358979323846264338327950288419716939937510", ""}}) {
+    const std::string bytes = with_card(good, card);
+    EXPECT_EQ(read(bytes), ramp()) << card;
+    const FitsImage image(bytes, "frame.fits");
+    ASSERT_EQ(image.mended().size(), note.empty() ? 0u : 1u) << card;
+    if (!note.empty()) {
+      EXPECT_THAT(image.mended()[0], HasSubstr(note));
+    }
+  }
+}
+
+TEST(FitsImage, ReadsFilesWithoutTheirLastPaddingOrWithBytesAfterTheirLastHdu) {
+  const std::string good = encoded(ForeignImage{.shape = {columns, rows}, .values = ramp()});
+  const std::size_t end = good.size() / 2880 * 2880 - 2880 + columns * rows * 2 % 2880;
+  for (const std::string& bytes :
+       {good.substr(0, end), good.substr(0, end + 1), good + std::string(2880, '\0'), good + "x",
+        good + std::string(5760, '~')}) {
+    EXPECT_EQ(read(bytes), ramp());
+    EXPECT_EQ(FitsImage(bytes, "frame.fits").mended().size(), 1u);
+  }
+  EXPECT_THAT(error_of(good.substr(0, end - 1)), HasSubstr("frame.fits: is truncated"));
+}
+
+// 3 MB of gzip hold 3 GB of zeros: no more is unpacked than the headers ask for, and a block.
+TEST(FitsImage, UnpacksNoMoreOfAFileThanItsHeadersAskFor) {
+  const std::string good = encoded(ForeignImage{.shape = {columns, rows}, .values = ramp()});
+  const std::string path = testing::TempDir() + "/bomb.fits.gz";
+  gzFile file = gzopen(path.c_str(), "wb1");
+  gzwrite(file, good.data(), unsigned(good.size()));
+  const std::string zeros(1 << 20, '\0');
+  for (int i = 0; i < 64; ++i) gzwrite(file, zeros.data(), unsigned(zeros.size()));
+  gzclose(file);
+  const std::string bytes = read_fits_file(path);
+  EXPECT_EQ(bytes.size(), good.size() + 2880);
+  EXPECT_EQ(read(bytes), ramp());
+}
+
+// CFITSIO 4.2 writes beyond its array of axes.
+TEST(FitsImage, RefusesMoreAxesThanCfitsioHolds) {
+  std::string bytes = encoded(ForeignImage{.shape = {columns, rows}, .values = ramp()});
+  for (const char* count : {"100", "200", "999"}) {
+    bytes.replace(bytes.find("NAXIS   =") + 27, 3, count);
+    EXPECT_EQ(error_of(bytes), std::string("frame.fits: NAXIS: must be at most 99, got ") + count);
+  }
 }
 
 TEST(FitsImage, HasNoValueWhereThereIsBlankOrNan) {

@@ -50,6 +50,45 @@ TEST(ExposureTimes, ReadsDatesInAllScales) {
             "2024-03-01T00:00:10.123Z");
 }
 
+// Reference: FITS Standard 4.0, sections 4.4.2.1 and 9; astropy 5.2 for TAI and the day before.
+TEST(ExposureTimes, ReadsDatesAsCamerasWriteThem) {
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018-01-20T18:02:00.317-0700"}}), "2018-01-21T01:02:00.317Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018-01-21T03:32:00.5+02:30"}}), "2018-01-21T01:02:00.500Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018-01-21T03:02:00+02"}}), "2018-01-21T01:02:00.000Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018-01-21 01:02:00.5 UTC"}}), "2018-01-21T01:02:00.500Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "21/01/98"}, {"TIME-OBS", "01:02:00"}}),
+            "1998-01-21T01:02:00.000Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018/01/21"}, {"UT", "1:02:00.25"}}),
+            "2018-01-21T01:02:00.250Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "01/21/2018 01:02:00"}}), "2018-01-21T01:02:00.000Z");
+  EXPECT_EQ(start_of({{"DATE_OBS", "2021-04-07T12:03:57.256"}}), "2021-04-07T12:03:57.256Z");
+  // As SDSS writes them.
+  EXPECT_EQ(start_of({{"DATE-OBS", "2009-10-17"}, {"TAIHMS", "01:53:10.59"}, {"TIMESYS", "TAI"}}),
+            "2009-10-17T01:52:36.590Z");
+  // The end of another shutter motion does not replace a start.
+  EXPECT_EQ(start_of({{"DATE-OBS", "2020-05-28"},
+                      {"UT", "14:32:17.953"},
+                      {"MJD-END", "58997.60624778"},
+                      {"EXPTIME", "40"}}),
+            "2020-05-28T14:32:17.953Z");
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018-01-21T01:02:00+99:00:00"}}), "none");
+  EXPECT_EQ(start_of({{"DATE-OBS", "31/31/98"}, {"TIME-OBS", "01:02:00"}}), "none");
+  EXPECT_EQ(start_of({{"DATE-OBS", "2018-01-21T"}}), "none");
+}
+
+TEST(ExposureTimes, KnowsHowWellADateIsTold) {
+  FrameNotes notes;
+  const auto width_of = [&](const FitsValues& values) {
+    return exposure_times(StandardCards(values, notes)).width_s;
+  };
+  EXPECT_NEAR(width_of({{"MJD-OBS", "58139.043"}}), 86.4, 1e-9);
+  EXPECT_EQ(notes.assumed[0], "time: the last digit of MJD-OBS is 86.4 s: no time is known better");
+  EXPECT_NEAR(width_of({{"MJD-OBS", "5.8139043E4"}}), 86.4, 1e-9);
+  EXPECT_NEAR(width_of({{"MJD-OBS", "58997.60576334"}}), 0.000864, 1e-12);
+  EXPECT_EQ(width_of({{"DATE-OBS", "2018-01-21T01:02"}}), 60.0);
+  EXPECT_EQ(width_of({{"DATE-OBS", "2018-01-21T01:02:00"}}), 0.0);
+}
+
 TEST(ExposureTimes, SaysWhatIsMissing) {
   FrameNotes notes;
   const FitsValues values = {{"DATE-OBS", "yesterday 10:00"}, {"EXPTIME", "-1"}};
@@ -67,6 +106,40 @@ TEST(ExposureTimes, TellsPlanesByTheThirdAxis) {
   const FitsValues cycle = {{"KCT", "0.04"}};
   EXPECT_EQ(seconds_to_plane(StandardCards(cycle, notes), 100), 4.0);
   EXPECT_FALSE(seconds_to_plane(StandardCards({}, notes), 1));
+}
+
+TEST(StandardCards, ReadsAnglesWithUnitsAndSides) {
+  FrameNotes notes;
+  const FitsValues values = {{"A", "12h30m36s"},       {"B", "33d46m37.2s N"},
+                             {"C", "84.398 W"},        {"D", "+33:46:37:20"},
+                             {"E", "-84:23:52:80"},    {"F", "33:46:37.5:20"},
+                             {"G", "84 23 52.8 West"}, {"H", "33?46'37\""}};
+  const StandardCards cards(values, notes);
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("A", true), 187.65);
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("B", false), 33 + 46 / 60.0 + 37.2 / 3600);
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("C", false), -84.398);
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("D", false), 33 + 46 / 60.0 + 37.2 / 3600);
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("E", false), -(84 + 23 / 60.0 + 52.8 / 3600));
+  EXPECT_DOUBLE_EQ(*cards.angle_deg("H", false), 33 + 46 / 60.0 + 37 / 3600.0);
+  EXPECT_EQ(notes.assumed[0], "D: its fourth part is taken for hundredths of a second");
+  EXPECT_FALSE(cards.angle_deg("F", false));
+  EXPECT_FALSE(cards.angle_deg("G", false));
+}
+
+// Names that SharpCap, NINA and observatories use.
+TEST(SiteCards, ReadsTheNamesOfManyPrograms) {
+  for (const auto& [latitude, longitude] : {std::pair{"OBSLAT", "OBSLONG"},
+                                            {"SITELAT", "SITELON"},
+                                            {"LATITUDE", "LONGITUD"},
+                                            {"GEOLAT", "GEOLON"},
+                                            {"OBSLAT", "OBSLON"}}) {
+    FrameNotes notes;
+    const FitsValues values = {{latitude, "+33:46:37"}, {longitude, "-84:23:53"}};
+    const auto site = site_of(StandardCards(values, notes));
+    ASSERT_TRUE(site) << latitude;
+    EXPECT_NEAR(site->latitude_deg, 33.776944, 1e-6);
+    EXPECT_NEAR(site->longitude_deg, -84.398056, 1e-6);
+  }
 }
 
 // Reference: the site of Atlanta in launch/sites by its ITRS position, to a metre.

@@ -3,8 +3,11 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <sstream>
 
+#include "core/base/error.h"
+#include "core/base/fits_guard.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/ingest/any_frame.h"
@@ -71,16 +74,40 @@ TEST(WithAstropy, DirectionsOfEachFormOfAWcsAreTheSame) {
     const auto wcs = wcs_of(StandardCards(image.values(), notes));
     ASSERT_TRUE(wcs) << name << ": " << notes.missing.at(0);
     const auto expected = from_spherical<Gcrs>(ra_deg * deg, dec_deg * deg);
-    EXPECT_LT(angle_rad(wcs_direction(*wcs, {x, y}), expected), 1e-6 * arcsec + 1e-11) << name;
+    // Other frames: astropy precesses FK5 by IAU 2006, and the E-terms of FK4 differ over a field.
+    const double most = name.starts_with("other-") ? 0.1 * arcsec : 1e-6 * arcsec + 1e-11;
+    EXPECT_LT(angle_rad(wcs_direction(*wcs, {x, y}), expected), most) << name;
     // The camera that images so: its pixels agree in the middle of the frame.
     const CameraView view = view_of(*wcs, image.columns(), image.rows()).value();
     const PixelPosition middle{(image.columns() - 1) / 2.0, (image.rows() - 1) / 2.0};
     const auto v = view.camera_from_gcrs * wcs_direction(*wcs, middle + PixelPosition{2, 3});
-    if (name == "crota") continue;  // pixels are not square
+    if (name == "crota" || name.starts_with("tpv")) continue;  // pixels are not square
     EXPECT_NEAR(v.x / v.z * view.focal_length_px, 2, 0.02) << name;
     EXPECT_NEAR(v.y / v.z * view.focal_length_px * (view.mirrored ? -1 : 1), 3, 0.02) << name;
   }
-  EXPECT_EQ(places, 14 * 4);
+  EXPECT_EQ(places, 21 * 4);
+}
+
+// Unprintable bytes, long numbers, texts without an end, missing padding, bytes after the last HDU.
+TEST(WithAstropy, FilesWithMangledHeadersAreReadWhereAstropyReadsThem) {
+  if (!has_astropy()) DMISE_SKIP() << "needs python3-astropy";
+  const std::string directory = testing::TempDir() + "/foreign-mangled";
+  std::istringstream lines(with_astropy("mangled", directory));
+  std::string name;
+  double sum = 0;
+  int files = 0;
+  for (; lines >> name >> sum; ++files) {
+    const std::string bytes = read_fits_file(directory + "/" + name + ".fits");
+    try {
+      FitsImage image(bytes, name);
+      std::vector<double> values;
+      image.add_plane(0, values);
+      EXPECT_DOUBLE_EQ(std::accumulate(values.begin(), values.end(), 0.0), sum) << name;
+    } catch (const Error& error) {
+      ADD_FAILURE() << error.what();
+    }
+  }
+  EXPECT_GT(files, 350);
 }
 
 }  // namespace

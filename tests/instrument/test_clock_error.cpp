@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/effects/plan_facts.h"
 #include "core/instrument/instrument.h"
 
 namespace dmise {

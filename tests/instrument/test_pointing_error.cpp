@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 namespace {

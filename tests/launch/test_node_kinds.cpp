@@ -33,7 +33,8 @@ struct SmallRun {
     std::ofstream(directory / "small.yaml")
         << "simulation: {start: 2020-01-01T00:00:00Z, duration_s: 20, tick_s: 10}\n"
            "objects: [{name: ball, radius_m: 1, motion: {two_body: {semi_major_axis_m: 7e6, "
-           "eccentricity: 0, inclination_deg: 90, raan_deg: 90}}}]\n"
+           "eccentricity: 0, inclination_deg: 90, raan_deg: 90}}}, {name: dart, motion: {node: "
+           "gnc}}]\nnodes: [{name: gnc, run: [sh]}]\n"
            "stars: {catalogue: stars.csv}\noutput: {positions: [csv]}\nfusion: on\n"
            "sensors:\n  - {name: eye, site: {latitude_deg: 30, longitude_deg: 0, height_m: 0},\n"
            "     camera: {optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: "
@@ -61,7 +62,9 @@ TEST(NodeKinds, EveryKindIsMadeUnderItsNameAndPublishesItsTopics) {
     EXPECT_EQ(kind_of_node(nodes[0], run.scenario), &kind);
     std::set<std::string> topics;
     for (const auto& topic : kind.topics)
-      topics.insert(topic.back() == '/' ? topic + "eye" : topic);
+      topics.insert(topic.back() != '/'  ? topic
+                    : kind.each_own_node ? topic + "gnc"
+                                         : topic + "eye");
     const auto produced = node->produces();
     EXPECT_EQ(std::set<std::string>(produced.begin(), produced.end()), topics) << kind.name;
   }
@@ -70,17 +73,18 @@ TEST(NodeKinds, EveryKindIsMadeUnderItsNameAndPublishesItsTopics) {
 TEST(NodeKinds, ASensorCannotBeCalledAsAKindIs) {
   for (const NodeKind& kind : node_kinds())
     if (!kind.each_sensor) {
-      EXPECT_TRUE(SensorNames().fault_of(kind.name)) << kind.name;
+      EXPECT_TRUE(NodeNames().fault_of(kind.name)) << kind.name;
     }
 }
 
 TEST(NodeKinds, WhatIsNotWantedIsNoNodeOfTheRun) {
   SmallRun run;
   EXPECT_EQ(nodes_of(run.scenario),
-            (std::vector<std::string>{"orbit-node", "environment-node", "eye", "positions-node",
-                                      "fusion-node"}));
+            (std::vector<std::string>{"orbit-node", "environment-node", "gnc", "eye",
+                                      "positions-node", "fusion-node"}));
   run.scenario.output = {};
   run.scenario.fusion.reset();
+  run.scenario.own_nodes.clear();
   EXPECT_EQ(nodes_of(run.scenario),
             (std::vector<std::string>{"orbit-node", "environment-node", "eye"}));
   EXPECT_TRUE(kind_of_node("positions-node", run.scenario));
@@ -88,7 +92,7 @@ TEST(NodeKinds, WhatIsNotWantedIsNoNodeOfTheRun) {
   EXPECT_FALSE(kind_of_node("other", run.scenario));
 }
 
-// A container for each: what a scenario does not want stands by.
+// A container for each but the user's own: what a scenario does not want stands by.
 TEST(NodeKinds, ComposeHasAServiceForEachKindAndNoOther) {
   std::set<std::string> services, expected{"time-master", "broker"};
   for (const auto& service : YAML::Load(text_of("compose.yaml"))["services"]) {
@@ -99,16 +103,17 @@ TEST(NodeKinds, ComposeHasAServiceForEachKindAndNoOther) {
               std::string::npos)
         << name;
   }
-  for (const NodeKind& kind : node_kinds()) expected.insert(kind.name);
+  for (const NodeKind& kind : node_kinds())
+    if (!kind.each_own_node) expected.insert(kind.name);
   EXPECT_EQ(services, expected);
 }
 
-// A task for each, then one for each sensor.
+// A task for each but the user's own, then one for each sensor.
 TEST(NodeKinds, ASlurmJobHasATaskForEachKind) {
   const std::string job = text_of("slurm/run.sbatch");
   int task = 2;
   for (const NodeKind& kind : node_kinds()) {
-    if (kind.each_sensor) continue;
+    if (kind.each_sensor || kind.each_own_node) continue;
     const std::string line = std::to_string(task++) + ") node=" + kind.name + " ;;";
     EXPECT_NE(job.find(line), std::string::npos) << line;
   }

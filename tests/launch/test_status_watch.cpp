@@ -40,6 +40,17 @@ TEST(StatusWatch, TellsTimeRateAndLag) {
   EXPECT_THAT(line_of(table, "beta"), HasSubstr(" 25 s "));
 }
 
+TEST(StatusWatch, HasNoRateAndNoLagForNodesWithoutTicks) {
+  StatusWatch watch;
+  for (const double now_s : {100.0, 102.0}) {
+    RunStatus status = run_of(10, 10);
+    status.nodes.push_back({.name = "broker", .done = -1});
+    watch.take(status, now_s);
+  }
+  EXPECT_THAT(line_of(watch.table({.columns = 120}), "broker"), Not(HasSubstr("0x")));
+  EXPECT_THAT(line_of(watch.table({.columns = 120}), "broker"), Not(HasSubstr(" s ")));
+}
+
 TEST(StatusWatch, TellsGapsAndTheLastError) {
   StatusWatch watch;
   RunStatus status = run_of(10, 10);

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/material_config.h"
+#include "core/config/yaml_reader.h"
 #include "tests/materials/brdf_value.h"
 
 namespace dmise {

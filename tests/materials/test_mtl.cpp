@@ -90,11 +90,23 @@ TEST(Mtl, TellsThePicturesOfAMaterialAndHowTheyLie) {
   EXPECT_TRUE(notes.empty());
 }
 
+TEST(Mtl, ReadsTheOptionsOfExporters) {
+  const auto all = parse(
+      "newmtl a\nmap_Kd -t 0.1 0.2 0.3 -mm 0.25 0.5 -imfchan l -texres 512 parts\\my hull.png\n");
+  const Texture& colours = *all.at("a").colour_map;
+  EXPECT_EQ(colours.file, "parts/my hull.png");
+  EXPECT_DOUBLE_EQ(colours.base, 0.25);
+  EXPECT_DOUBLE_EQ(colours.gain, 0.5);
+  EXPECT_DOUBLE_EQ(colours.scale_u, 1.0);
+  EXPECT_DOUBLE_EQ(colours.offset_v, 0.0);
+  EXPECT_EQ(complaint("newmtl a\nmap_Kd -mm x 1 a.png\n"),
+            "a.mtl:2: map_Kd: must be a number, got x");
+}
+
 TEST(Mtl, WhatOfAPictureCannotBeUsedPointsAtItsLine) {
   EXPECT_EQ(complaint("newmtl a\nmap_Kd\n"), "a.mtl:2: map_Kd: needs the name of a picture");
   EXPECT_EQ(complaint("newmtl a\nmap_Kd -s 2 2\n"), "a.mtl:2: map_Kd: needs the name of a picture");
-  EXPECT_EQ(complaint("newmtl a\nmap_Kd -t 1 1 1 a.png\n"),
-            "a.mtl:2: map_Kd: option cannot be used, got -t");
+  EXPECT_EQ(complaint("newmtl a\nmap_Kd -t 1 1 1 a.png\n"), "");  // turbulence has no effect
   EXPECT_EQ(complaint("newmtl a\nmap_Kd -bm 1 a.png\n"),
             "a.mtl:2: map_Kd: option cannot be used, got -bm");
   EXPECT_EQ(complaint("newmtl a\nbump -bm x a.png\n"), "a.mtl:2: bump: must be a number, got x");

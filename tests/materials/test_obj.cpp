@@ -145,6 +145,31 @@ TEST(Obj, MaterialsComeFromTheFileThenFromTheLibrary) {
   EXPECT_EQ(model.mesh.triangles.back().material, 0u);
 }
 
+// As exporters write them: several files in a line, names with blanks, folders by backslashes.
+TEST(Obj, ALineMayNameSeveralMaterialFiles) {
+  std::vector<std::string> asked;
+  const ObjSources sources{[&](const std::string& name) -> std::string {
+                             asked.push_back(name);
+                             return "newmtl " + name.substr(name.size() - 5, 1) + "\nKd 0.5 0 0\n";
+                           },
+                           [](std::string_view) { return std::optional<Material>(); }};
+  const auto model = parse_obj("mtllib a.mtl my b.MTL parts\\c.mtl\n" + corners +
+                                   "usemtl a\nf 1 4 3 2\nusemtl b\nf 5 6 7 8\nusemtl c\n" + faces,
+                               "a.obj", sources);
+  EXPECT_EQ(asked, (std::vector<std::string>{"a.mtl", "my b.MTL", "parts/c.mtl"}));
+  EXPECT_EQ(model.mesh.materials.size(), 3u);
+  EXPECT_EQ(complaint("mtllib\n"), "a.obj:1: mtllib: needs a name");
+}
+
+TEST(Obj, MaterialFilesAreInTheModelsFolder) {
+  for (const std::string name :
+       {"../../../../etc/passwd", "/etc/passwd", "x/../../a.mtl", "..\\a.mtl"})
+    EXPECT_EQ(complaint("mtllib " + name + "\n")
+                  .rfind("a.obj:1: mtllib: must be in the folder of the model", 0),
+              0u)
+        << name;
+}
+
 TEST(Obj, AMissingMaterialIsRefusedAndNoMaterialIsGreyWithANote) {
   EXPECT_EQ(complaint(corners + "usemtl gold\n" + faces),
             "a.obj:9: usemtl: no such material in a material file or in the library, got gold");

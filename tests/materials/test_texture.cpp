@@ -25,6 +25,16 @@ TEST(Texture, IsBilinearBetweenTexelCentres) {
   EXPECT_FLOAT_EQ(clamped.at({7.0f, 0.5f})[0], 1.0f);
 }
 
+// -mm base gain: base + gain * value of the picture, in heights too.
+TEST(Texture, ValuesAreMappedByBaseAndGain) {
+  const LinearPicture row{4, 1, 1, {0.0f, 0.2f, 0.6f, 1.0f}};
+  const Texture mapped = colour_texture({.base = 0.25, .gain = 0.5}, row);
+  EXPECT_FLOAT_EQ(mapped.at({0.375f, 0.5f})[0], 0.35f);
+  EXPECT_FLOAT_EQ(mapped.at({0.875f, 0.5f})[0], 0.75f);
+  const Texture plain = slope_texture({}, row), halved = slope_texture({.gain = 0.5}, row);
+  EXPECT_FLOAT_EQ(halved.at({0.375f, 0.5f})[0], 0.5f * plain.at({0.375f, 0.5f})[0]);
+}
+
 TEST(Texture, AReflectanceBeyondOneIsRefused) {
   EXPECT_THROW(colour_texture({}, {1, 1, 1, {1.001f}}), Error);
   EXPECT_THROW(colour_texture({}, {1, 1, 1, {-0.001f}}), Error);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/effects/plan_facts.h"
 #include "core/optics/psf_model.h"
 
 namespace dmise {
@@ -14,7 +15,7 @@ namespace {
 constexpr double lambda = 0.55e-6;
 
 /// The air of an exposure of 32 screens before an aperture of four r0.
-PlanFacts::Air air() {
+AirFacts air() {
   return {.airy_px = 0.5, .apertures_per_r0 = 4.0, .apertures_blown = 8.0, .screens = 32};
 }
 
@@ -46,7 +47,7 @@ TEST(ImageMotion, FallsWithTheExposureAsAFrozenLayersDoes) {
       {30, 1000, 0.311, 0.456}, {100, 1000, 0.199, 0.305}, {300, 1000, 0.130, 0.206},
       {2, 2, 0.801, 0.910},     {8, 2, 0.671, 0.762},      {32, 2, 0.602, 0.660},
       {32, 8, 0.345, 0.466},    {100, 32, 0.207, 0.309}};
-  PlanFacts::Air a = air();
+  AirFacts a = air();
   a.screens = 1;
   const double instant = std::pow(image_motion_px(a), 2.0);
   EXPECT_NEAR(instant, 0.18 * std::pow(4.0, 5.0 / 3.0) * 0.25, 1e-12);
@@ -66,7 +67,7 @@ TEST(ScatteredLight, IsThatOfKolmogorovsLongExposure) {
   struct Row {
     double widths, beyond;
   };
-  PlanFacts::Air a = air();
+  AirFacts a = air();
   const double fwhm_px = 0.976 * a.airy_px * a.apertures_per_r0;
   for (const Row& row : {Row{3, 0.01594}, Row{4, 0.00948}, Row{6, 0.00468}, Row{10, 0.00197}}) {
     EXPECT_GE(scattered_beyond(a, row.widths * fwhm_px), row.beyond) << row.widths;
@@ -85,10 +86,10 @@ TEST(ImageMotion, BoundsWhatExposuresThroughScreensHave) {
   const double exposure_s = 5.5 * seeing.tau0_s(lambda);
   const PsfPlan plan = plan_psf(o, lambda, seeing, exposure_s);
   ASSERT_EQ(plan.screens, 6);
-  const PlanFacts::Air a{.airy_px = lambda / o.aperture_m / o.pixel_angle_rad(),
-                         .apertures_per_r0 = o.aperture_m / seeing.r0_at_m(lambda),
-                         .apertures_blown = seeing.wind_m_per_s * exposure_s / o.aperture_m,
-                         .screens = plan.screens};
+  const AirFacts a{.airy_px = lambda / o.aperture_m / o.pixel_angle_rad(),
+                   .apertures_per_r0 = o.aperture_m / seeing.r0_at_m(lambda),
+                   .apertures_blown = seeing.wind_m_per_s * exposure_s / o.aperture_m,
+                   .screens = plan.screens};
   const double bound_px = 4.0 * image_motion_px(a);
   PsfModel model(o, {{lambda, 1.0}}, plan, seeing, rng_key(1, "s", 0, "turbulence"));
   std::vector<double> moved_px;

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/text_file.h"
 #include "tests/support/data.h"
 
 namespace dmise {
@@ -94,13 +98,18 @@ TEST(Catalogue, GpredictSectionsAreRead) {
   EXPECT_EQ(file.describe(file.refused[0]), "t:9: section without TLE1 and TLE2, got \"[7]\"");
 }
 
-// Debian's gpredict 2.3: 979 sections.
-TEST(Catalogue, GpredictsOwnFileGives979Sets) {
-  const std::string path = test::catalogue_path("satellites.dat");
-  DMISE_NEEDS_FILE(path);
+// Frames, detections and truth of every shipped scenario depend on it.
+TEST(Catalogue, TheShippedOneHas979SetsOfJanuary2018) {
+  const std::string path = test::catalogue_path("demo.tle");
+  EXPECT_EQ(sha256_hex(read_text_file(path)),
+            "ddb2baa5d160dbfa69fb723b8dd3548cad1f6a073efb79e8a11c75221ff8532d");
   const auto file = read_catalogue(path);
   EXPECT_EQ(file.elements.size(), 979u);
   EXPECT_EQ(file.records(), 979u);
+  const double newest_jd = std::ranges::max(file.elements, {}, [](const MeanElements& e) {
+                             return e.epoch_jd1 + e.epoch_jd2;
+                           }).epoch_jd1;
+  EXPECT_NEAR(newest_jd, 2458140.5, 1.0);  // 2018-01-22
 }
 
 TEST(Catalogue, WholePublicCataloguesAreRead) {

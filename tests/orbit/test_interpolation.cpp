@@ -159,8 +159,7 @@ TEST(CatalogueInterpolation, StatedErrorsHoldForOtherObjects) {
   EXPECT_EQ(longest_tick_s(HermiteOrder::cubic), 60);
   EXPECT_EQ(longest_tick_s(HermiteOrder::quintic), 120);
   EXPECT_EQ(longest_tick_s(HermiteOrder::septic), 180);
-  const std::string path = test::catalogue_path("satellites.dat");
-  DMISE_NEEDS_FILE(path);
+  const std::string path = test::catalogue_path("demo.tle");
   const Sgp4Batch batch(read_catalogue(path).elements);
   const Utc start{2458138.5, 0.9861};
   for (const HermiteOrder order : orders)
@@ -174,8 +173,7 @@ TEST(CatalogueInterpolation, StatedErrorsHoldForOtherObjects) {
 
 // 979 real sets over a whole minute: what the default of a 10 s tick costs.
 TEST(CatalogueInterpolation, CubicAt10SecondsIsGoodToCentimetresForRealObjects) {
-  const std::string path = test::catalogue_path("satellites.dat");
-  DMISE_NEEDS_FILE(path);
+  const std::string path = test::catalogue_path("demo.tle");
   const Sgp4Batch batch(read_catalogue(path).elements);
   const Utc start{2458138.5, 0.9861};  // 2018-01-20T23:40
   const auto cubic = measure_catalogue_interpolation(batch, start, {.intervals = 6});

@@ -109,6 +109,57 @@ TEST(Oem, TimeSystemsDifferByTheirOffsets) {
   }
 }
 
+// Reference: astropy 5.2, Time(text, scale="tdb").tai; tests/reference/oem_times.py.
+TEST(Oem, TdbDiffersFromTtByItsPeriodicTerms) {
+  const Trajectory january = parse_oem(header + meta("GCRF", "TDB") + lines(0, 20), "t");
+  EXPECT_NEAR(seconds_between(at(0), january.reference), -32.1839180, 2e-6);
+  const Trajectory april =
+      parse_oem(header + meta("GCRF", "TDB") + line("2026-04-01T00:00:00", start), "t");
+  EXPECT_NEAR(seconds_between(at(90 * day_s), april.reference), -32.1856299, 2e-6);
+}
+
+/// The path of `lines` in XML, with units as CCSDS 505.0-B writes them.
+std::string oem_xml(const std::string& unit = "km") {
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<oem id=\"CCSDS_OEM_VERS\" version=\"2.0\">\n"
+      "<header><CREATION_DATE>2026-01-01T00:00:00</CREATION_DATE><ORIGINATOR>T</ORIGINATOR>"
+      "</header>\n<body><segment>\n<metadata>\n<OBJECT_NAME>INSPECTOR</OBJECT_NAME>\n"
+      "<OBJECT_ID>2026-001A</OBJECT_ID>\n<CENTER_NAME>EARTH</CENTER_NAME>\n"
+      "<REF_FRAME>GCRF</REF_FRAME>\n<TIME_SYSTEM>TAI</TIME_SYSTEM>\n</metadata>\n<data>\n";
+  for (int m = 0; m <= 20; ++m) {
+    const TwoBodyState s = propagate_two_body(start, 60.0 * m);
+    char state[800];
+    std::snprintf(state, sizeof state,
+                  "<stateVector><EPOCH>2026-01-01T00:%02d:00.000</EPOCH><X units=\"%s\">%.12f</X>"
+                  "<Y>%.12f</Y><Z>%.12f</Z><X_DOT units=\"km/s\">%.15f</X_DOT>"
+                  "<Y_DOT>%.15f</Y_DOT><Z_DOT>%.15f</Z_DOT></stateVector>\n",
+                  m, unit.c_str(), s.position_m.x / km, s.position_m.y / km, s.position_m.z / km,
+                  s.velocity_m_per_s.x / km, s.velocity_m_per_s.y / km, s.velocity_m_per_s.z / km);
+    text += state;
+  }
+  return text + "</data></segment></body></oem>\n";
+}
+
+TEST(Oem, XmlIsReadAsKvn) {
+  const Trajectory kvn = parse_oem(header + meta() + lines(0, 20), "t"),
+                   xml = parse_oem(oem_xml(), "t");
+  ASSERT_EQ(xml.segments.size(), 1u);
+  EXPECT_EQ(xml.segments[0].object_name, "INSPECTOR");
+  EXPECT_EQ(xml.segments[0].time_s, kvn.segments[0].time_s);
+  EXPECT_LE(norm(gcrs(xml, 300).position_m - gcrs(kvn, 300).position_m), 1e-9);
+  for (const auto& [text, message] : {std::pair<std::string, std::string>{
+                                          oem_xml("m"), "t:13: the unit of X is not km, got \"m\""},
+                                      {oem_xml().substr(0, 700), "invalid XML"},
+                                      {"<omm></omm>", "t: not a CCSDS OEM"}}) {
+    try {
+      parse_oem(text, "t");
+      ADD_FAILURE() << message;
+    } catch (const ConfigError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message));
+    }
+  }
+}
+
 TEST(Oem, LeapSecondIsASecondLong) {
   const std::string text = header + meta("GCRF", "UTC") +
                            line("2016-12-31T23:59:00", propagate_two_body(start, 0)) +

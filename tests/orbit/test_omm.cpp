@@ -226,6 +226,14 @@ TEST(Omm, BrokenFileIsAnErrorWithItsLine) {
   EXPECT_EQ(parse_catalogue("[\n1, \"a\", [{}], {}]", "t").refused.size(), 4u);
 }
 
+TEST(Omm, NullInAListIsRefusedByItsLine) {
+  const CatalogueFile file = parse_catalogue("[\n" + json(iss) + ",\nnull\n]", "t");
+  EXPECT_EQ(file.elements.size(), 1u);
+  ASSERT_EQ(file.refused.size(), 1u);
+  EXPECT_THAT(file.describe(file.refused[0]),
+              testing::ContainsRegex("^t:[0-9]+: not a message, got \"null\""));
+}
+
 TEST(Omm, PublishedSamplesAreRead) {
   const std::string six_digits = test::data_path("tle/omm_celestrak_6digit_samples.json");
   DMISE_NEEDS_FILE(six_digits);

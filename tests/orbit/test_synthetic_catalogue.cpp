@@ -103,8 +103,7 @@ TEST(ElementText, WrittenOmmReadsBackToTheLastDigit) {
 // 979 sets of a published file, written and read again.
 // blanks).
 TEST(ElementText, RealSetsSurviveBeingWrittenAndRead) {
-  const std::string path = test::catalogue_path("satellites.dat");
-  DMISE_NEEDS_FILE(path);
+  const std::string path = test::catalogue_path("demo.tle");
   const auto original = read_catalogue(path).elements;
   const auto again = parse_catalogue(format_3le(original), "t");
   ASSERT_EQ(again.elements.size(), original.size());

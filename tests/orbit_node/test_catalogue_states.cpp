@@ -16,8 +16,7 @@ class CatalogueStates : public test::ScenarioDirectory {};
 // SGP4's velocity is not the derivative of its position: median 2.6 cm/s over a catalogue, metres a
 // second for a few. What is published as slope must be the derivative.
 TEST_F(CatalogueStates, PublishedSlopesOfRealObjectsAreDerivativesAndNotTheModelsVelocity) {
-  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
-  const Scenario scenario = load("  - {catalogue: gpredict}\n");
+  const Scenario scenario = load("  - {catalogue: demo}\n");
   const Clock clock = make_clock(scenario);
   Threads threads(1);
   const auto population = load_objects(scenario, clock);

@@ -47,7 +47,7 @@ def programs_work(prefix, directory):
     dmise = prefix / "bin/dmise"
     check(call(dmise, "list", "cameras") == call(BUILD / "bin/dmise", "list", "cameras"), "it finds its cameras")
     check(str(prefix) in call(dmise, "list", "catalogues").splitlines()[0], "and its catalogues, in the prefix")
-    commit = r"\(commit ([0-9a-f]{12}(-dirty)?|unknown), (sse2|avx2|avx512)\)\n"
+    commit = r"\(commit ([0-9a-f]{12}(-dirty)?|unknown), (sse2|avx2|avx512|generic)\)\n"
     for program in sorted((prefix / "bin").iterdir()):
         check(re.fullmatch(program.name + r" [0-9.]+ " + commit, call(program, "--version")), f"{program.name} --version")
     (directory / "one.yaml").write_text(SCENARIO)

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/pointing_config.h"
+#include "core/config/yaml_reader.h"
 #include "sensors/pipeline/sensor_evaluator.h"
 #include "tests/pipeline/harness.h"
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/products/frame_report.h"
 #include "sensors/pipeline/cue_journal.h"
 #include "sensors/pipeline/cue_path.h"
 #include "sensors/pipeline/sensor_evaluator.h"

@@ -190,7 +190,7 @@ TEST(DetectionFlags, RefractionIsRemovedWhereThereIsNone) {
   EXPECT_EQ(without.detections[0].refraction_parallax_sigma_rad, 0.0);
 }
 
-// OSCAR 7 as in Debian's gpredict: a sphere of 1 m at 1460 km, V = 7.7, whose light fills the
+// OSCAR 7 as in `catalogue: demo`: a sphere of 1 m at 1460 km, V = 7.7, whose light fills the
 // wells of one to three pixels of the raven in a second, by where in a pixel it falls.
 TEST(SaturatedPoint, IsFoundInEveryFrameAndFlagged) {
   test::Stage stage(

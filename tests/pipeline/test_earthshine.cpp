@@ -45,6 +45,21 @@ TEST(EarthshineEffect, LightsSpheresMeshesAndShapesAlike) {
   }
 }
 
+// The light drawn and the magnitude in the truth change alike.
+TEST(EarthshineEffect, IsInTheTrueMagnitudeAsInTheLightDrawn) {
+  const std::string mesh =
+      "    attitude: nadir\n    geometry: {model: sphere, facets: 5000, "
+      "material: white, materials: " DMISE_SOURCE_DIR "/tests/pipeline/plain.yaml, radius_m: 1}\n";
+  for (const std::string& shape : {std::string("    radius_m: 1\n    albedo: 0.8\n"), mesh}) {
+    const Truth without = truth_named(Stage(scene(shape, false)).frame(), "target");
+    const Truth with = truth_named(Stage(scene(shape, true)).frame(), "target");
+    EXPECT_GT(with.rendered_signal_e, 1.005 * without.rendered_signal_e);
+    EXPECT_NEAR(without.true_magnitude - with.true_magnitude,
+                2.5 * std::log10(with.rendered_signal_e / without.rendered_signal_e), 2e-3)
+        << shape;
+  }
+}
+
 TEST(EarthshineEffect, IsOffUnlessAskedFor) {
   EXPECT_FALSE(EffectSet().has(Earthshine::facts));
   const Stage stage(scene("    radius_m: 1\n", true));

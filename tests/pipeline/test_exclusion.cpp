@@ -5,6 +5,7 @@
 #include "core/detection/detection_json.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
+#include "core/products/frame_report.h"
 #include "core/score/json_record.h"
 #include "sensors/pipeline/bodies_in_field.h"
 #include "sensors/pipeline/exclusion.h"

@@ -148,6 +148,25 @@ TEST(ExposurePlanner, StarsBesideTheFrameCostTheirSearchAlone) {
   EXPECT_TRUE(beside.stars.empty());
 }
 
+// A field of 8 arcsec, 16 arcsec from where aberration would move the star in its middle.
+TEST(ExposurePlanner, CountsStarsWhereAFrameWithoutAberrationHasThem) {
+  for (const char* accuracy : {"standard", "reference"}) {
+    const Scene scene{.accuracy = accuracy,
+                      .camera =
+                          "{optics: {columns: 32, rows: 32, pixel_pitch_m: 5e-6, focal_length_m: 4,"
+                          " aperture_m: 0.3, psf_fwhm_px: 2}, detector: {quantum_efficiency: 0.8,"
+                          " read_noise_e: 5, full_well_e: 100000, gain_e_per_dn: 1.6, bias_dn: 100,"
+                          " adc_bits: 16}, band: {name: V, centre_m: 0.55e-6, width_m: 0.09e-6}}",
+                      .pointing = "{ra_deg: 49.7, dec_deg: 60}",
+                      .effects = "{annual_aberration: off, refraction: off}",
+                      .exposure_s = 0.01};
+    const FrameProducts frame =
+        test::Stage(scene.yaml(), "ra_deg,dec_deg,mag_v,bv\n49.7,60,3,0.65\n", element_set).frame();
+    EXPECT_GE(drawn_to_v_mag(frame), 3.0) << accuracy;
+    EXPECT_EQ(frame.stars.size(), 1u) << accuracy;
+  }
+}
+
 TEST(ExposurePlanner, ASensorMayHaveAnAccuracyOfItsOwn) {
   const std::string own = Scene{.accuracy = "reference", .more = ", accuracy: draft"}.yaml();
   const FrameProducts frame =

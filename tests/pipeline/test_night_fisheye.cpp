@@ -28,8 +28,6 @@ std::string night_fisheye(int frames) {
 }
 
 TEST(NightFisheye, StarsAloneGiveAtMostOneDetectionIn30Frames) {
-  if (!std::filesystem::exists(DMISE_SOURCE_DIR "/build/data/stars.dat"))
-    GTEST_SKIP() << "needs build/data/stars.dat";
   constexpr int frames = 30;
   test::Stage stage(night_fisheye(frames));
   std::size_t detections = 0;

@@ -14,7 +14,7 @@ std::string from_orbit(const std::string& pointing, double exposure_s) {
   const std::string length = std::to_string(exposure_s);
   return "simulation: {start: 2018-01-21T00:15:00Z, duration_s: " + length +
          ", tick_s: 30}\n"
-         "objects: [{catalogue: gpredict}]\n"
+         "objects: [{catalogue: demo}]\n"
          "sensors: [{name: a, platform: '25544', camera: geo-watch, pointing: {" +
          pointing + "}, exposure_s: " + length + ", cadence_s: " + length + "}]\n";
 }
@@ -45,7 +45,6 @@ std::set<std::size_t> asked_for_every_second(const View& view) {
 // A camera in low orbit turns by 230 deg in an hour, and much faster for a while where it follows
 // what passes near: its attitudes at start, middle and end do not bound that.
 TEST(ObjectsInField, AnHoursExposureOfATurningCameraMissesNoObject) {
-  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
   for (const char* pointing : {"tracking: fixed", "target: '29499', tracking: target"}) {
     test::Stage stage(from_orbit(pointing, 3600.0));
     const auto& sensor = stage.scenario.sensors[0];
@@ -62,10 +61,9 @@ TEST(ObjectsInField, AnHoursExposureOfATurningCameraMissesNoObject) {
 // cross its field near the start and the end of a minute, and are degrees away from it in the
 // middle.
 TEST(ObjectsInField, AMountThatFollowsALowSatelliteMissesNoFarObject) {
-  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
   test::Stage stage(
       "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 62, tick_s: 31}\n"
-      "objects: [{catalogue: gpredict}]\n"
+      "objects: [{catalogue: demo}]\n"
       "sensors: [{name: a, site: {latitude_deg: -16.433, longitude_deg: -105.204, height_m: 0}, "
       "camera: wide-field-cmos, pointing: {target: '25544', tracking: target}, exposure_s: 62, "
       "cadence_s: 62}]\n");

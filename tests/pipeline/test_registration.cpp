@@ -11,7 +11,7 @@ namespace {
 
 constexpr double tolerance_px = 0.01;
 
-// GOES 16 and the ISS, element sets of 2018-01-20 as in Debian's gpredict.
+// GOES 16 and the ISS, element sets of 2018-01-20 as in `catalogue: demo`.
 const std::string elements =
     "GOES 16\n"
     "1 41866U 16071A   18019.87773469 -.00000245  00000-0  00000-0 0  9992\n"

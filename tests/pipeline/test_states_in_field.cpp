@@ -30,7 +30,7 @@ std::string scene(const std::string& simulation, const std::string& sensor, doub
   const std::string length = std::to_string(exposure_s);
   return "simulation: {start: 2018-01-21T00:15:00Z, " + simulation +
          "}\n"
-         "objects:\n  - {catalogue: gpredict}\n" +
+         "objects:\n  - {catalogue: demo}\n" +
          own + "sensors: [{name: a, " + sensor + ", exposure_s: " + length +
          ", cadence_s: " + length + "}]\n";
 }
@@ -78,7 +78,6 @@ const std::string atlanta = "site: {latitude_deg: 33.8, longitude_deg: -84.4, he
 // 979 real element sets: every order, short and long ticks and exposures, cameras that stay, follow
 // the stars or a satellite, from the ground and from orbit, fields from 0.1 deg to the whole sky.
 TEST(StatesInField, ASensorFindsTheSameObjectsAtTheSamePlacesByItsOwnStates) {
-  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
   const std::string all_sky = atlanta + "camera: omnissa, pointing: zenith",
                     telescope = atlanta + "camera: raven, pointing: ",
                     imager = "platform: '25544', camera: geo-watch, pointing: {tracking: fixed}";
@@ -109,7 +108,6 @@ TEST(StatesInField, ASensorFindsTheSameObjectsAtTheSamePlacesByItsOwnStates) {
 
 // Objects of the scenario's own, whatever moves them, have no rough places: they are always known.
 TEST(StatesInField, OwnObjectsOfEveryMotionAreFound) {
-  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
   const std::string own = R"(
   - {name: kepler, attitude: nadir, motion: {two_body: {semi_major_axis_m: 7.0e6,
      eccentricity: 0.02, inclination_deg: 60, raan_deg: 40, true_anomaly_deg: 30}}}

@@ -7,6 +7,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
 #include "core/frames/geodesy.h"
 #include "core/optics/projection.h"
 #include "core/sky/place_effects.h"

@@ -18,7 +18,7 @@
 namespace dmise {
 namespace {
 
-// GOES 16, an element set of 2018-01-19 as in Debian's gpredict.
+// GOES 16, an element set of 2018-01-19 as in `catalogue: demo`.
 const std::string elements =
     "GOES 16\n"
     "1 41866U 16071A   18019.87773469 -.00000245  00000-0  00000-0 0  9992\n"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/effects/plan_facts.h"
 #include "core/plan/planner.h"
 
 namespace dmise {

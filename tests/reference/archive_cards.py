@@ -36,7 +36,7 @@ warnings.simplefilter("ignore")
 
 SCENARIO = """\
 simulation: {start: 2018-01-21T00:15:00Z, duration_s: 10, tick_s: 5, seed: 1}
-objects: [{catalogue: gpredict, only: [GOES 13, GOES 15, METOP-A], radius_m: 3}]
+objects: [{catalogue: demo, only: [GOES 13, GOES 15, METOP-A], radius_m: 3}]
 sensors:
   - {name: follow, site: atlanta, camera: raven, pointing: {target: GOES 13}, exposure_s: 4, cadence_s: 10}
   - {name: narrow, site: atlanta, camera: telescope-3m, pointing: {target: GOES 13}, exposure_s: 1, cadence_s: 10}
@@ -125,7 +125,7 @@ def judge_frame(frame, elements):
 
 
 def judge(dmise):
-    elements = read_elements(referee.CATALOGUES / "satellites.dat")
+    elements = read_elements(referee.CATALOGUES / "demo.tle")
     with tempfile.TemporaryDirectory() as directory:
         for compression, flags in (("true", "false"), ("{compression: rice}", "true")):
             scenario = pathlib.Path(directory) / "scenario.yaml"

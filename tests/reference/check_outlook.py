@@ -127,7 +127,7 @@ def run(binary, path, out):
 
 
 def counts(binary, directory):
-    text = (simulation("2018-01-21T00:15:00Z", duration_s=60) + "objects: [{catalogue: gpredict}]\nstars: {catalogue: kstars}\n"
+    text = (simulation("2018-01-21T00:15:00Z", duration_s=60) + "objects: [{catalogue: demo}]\nstars: {catalogue: kstars}\n"
             "sensors:\n")
     pointings = {"zenith": ("zenith", 30.0), "low": ("{azimuth_deg: 100, elevation_deg: 8}", 20.0),
                  "sky": ("{ra_deg: 83.6, dec_deg: 22.0}", 2.0), "wide": ("{azimuth_deg: 200, elevation_deg: 45}", 60.0),
@@ -271,7 +271,7 @@ def warned(binary, directory):
         assert text in good, text
         said = outlook(binary, write(directory, good.replace(text, slip, 1)))["warnings"]
         check(any(warning in line and "scenario.yaml:" in line for line in said), f"{slip}: {said}")
-    old = good.replace("objects: [{", "objects: [{catalogue: gpredict}, {").replace("2018-01-21", "2024-01-21")
+    old = good.replace("objects: [{", "objects: [{catalogue: demo}, {").replace("2018-01-21", "2024-01-21")
     check(any("from the start of the run" in w for w in outlook(binary, write(directory, old))["warnings"]),
           "elements years from the run are warned of")
 

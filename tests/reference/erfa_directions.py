@@ -1,6 +1,6 @@
 """The truth's apparent directions of satellites, from the ground and from orbit, are ERFA's.
 
-    erfa_directions.py RUN [--elements satellites.dat] [--platform SENSOR=NUMBER]..
+    erfa_directions.py RUN [--elements FILE] [--platform SENSOR=NUMBER]..
 
 Every line of truth.jsonl of every sensor, at mid exposure: SGP4 of Debian's python3-sgp4, TEME to GCRS by
 way of ITRS (GMST-82; IAU 2006/2000A), light time iterated on the propagated orbit, aberration by eraAb with
@@ -102,7 +102,7 @@ def judge(run, elements_path, platforms):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run")
-    parser.add_argument("--elements", default=referee.CATALOGUES / "satellites.dat")
+    parser.add_argument("--elements", default=referee.CATALOGUES / "demo.tle")
     parser.add_argument("--platform", action="append", default=[])
     options = parser.parse_args()
     named = (each.split("=") for each in options.platform)

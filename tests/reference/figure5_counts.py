@@ -8,7 +8,7 @@ and turned to the Earth by skyfield and by astropy. In the field: its gnomonic i
 south by 74 deg. Sunlit: the middle of the Sun (ERFA's) stands above the limb of WGS 84, as seen from it; half a disc is seen
 then, to 0.002 deg. Objects within 0.01 deg of an edge of the frame or of the limb are in doubt: the numbers agree but for those.
 The catalogue is that of 2019-12-19 with 18,470 objects where it is there ($DMISE_DATA, else ../shared/data),
-else Debian's.
+else the one that is shipped.
 """
 import argparse
 import csv
@@ -48,7 +48,7 @@ iers.conf.iers_degraded_accuracy = "ignore"
 def catalogue():
     """([(line 1, line 2)], start, what it is called)"""
     if not DATA.exists():
-        return list(read_elements(referee.CATALOGUES / "satellites.dat").values()), "2018-01-20T00:00:00Z", "Debian's"
+        return list(read_elements(referee.CATALOGUES / "demo.tle").values()), "2018-01-20T00:00:00Z", "the shipped one"
     lines = [line.rstrip() for line in gzip.open(DATA, "rt")]
     pairs = [(one, two) for one, two in zip(lines, lines[1:]) if one.startswith("1 ") and two.startswith("2 ")]
     return pairs, "2019-12-19T00:00:00Z", "2019-12-19"
@@ -121,7 +121,7 @@ def compare(binary, counts_file):
         with tempfile.TemporaryDirectory(prefix="dmise-referee-") as directory:
             (pathlib.Path(directory) / "objects.tle").write_text("".join(f"{one}\n{two}\n" for one, two in pairs))
             scenario = (referee.SOURCE / "launch/scenarios/figure5.yaml").read_text()
-            scenario = scenario.replace("catalogue: gpredict", "catalogue: objects.tle").replace("2018-01-21T00:00:00Z", start_text)
+            scenario = scenario.replace("catalogue: demo", "catalogue: objects.tle").replace("2018-01-21T00:00:00Z", start_text)
             (pathlib.Path(directory) / "s.yaml").write_text(scenario)
             subprocess.run([binary, "visible", f"{directory}/s.yaml", "--out", f"{directory}/out", "--rows", "1", "--threads", "2"],
                            check=True, capture_output=True)

@@ -1,6 +1,6 @@
 """Passes of satellites over Atlanta by skyfield, for tests/visibility/test_passes.cpp.
 
-Usage: passes.py satellites.dat. UT1 is taken for UTC, as without an Earth orientation file. Events are
+Usage: passes.py launch/catalogues/demo.tle. UT1 is taken for UTC, as without an Earth orientation file. Events are
 skyfield's `find_events` at 10 deg of elevation over a day, each then found to 1 ms by bisection of skyfield's own
 altitude. A row: catalogue number; rise, culmination and set [s from the start], elevation [rad], azimuth
 [rad], range [m] and angular rate in the horizon's axes [rad/s, over half a second] at the culmination; when skyfield's `is_sunlit` (a point-like Sun, here by ERFA, and a
@@ -54,14 +54,9 @@ def bisect(test, a, b):
     return 0.5 * (a + b)
 
 
-elements, entry = {}, {}
-with open(sys.argv[1]) as catalogue:  # gpredict's: NAME=, TLE1=, TLE2= lines
-    for line in catalogue:
-        if "=" in line:
-            key, value = line.rstrip().split("=", 1)
-            entry[key] = value
-            if key == "TLE2":
-                elements[int(value[2:7])] = (entry["NAME"], entry["TLE1"], value)
+with open(sys.argv[1]) as catalogue:
+    lines = [line.rstrip() for line in catalogue if not line.startswith("#")]
+elements = {int(two[2:7]): (name, one, two) for name, one, two in zip(lines[::3], lines[1::3], lines[2::3])}
 
 for number in NUMBERS:
     if number not in elements:

@@ -28,7 +28,7 @@ band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
 """
 EMPTY = """
 simulation: {start: 2018-01-21T00:15:00Z, duration_s: 20, tick_s: 5, seed: 1}
-objects: [{catalogue: gpredict, only: [GOES 13]}]
+objects: [{catalogue: demo, only: [GOES 13]}]
 output: {png: false}
 sensors:
   - {name: tracked, site: atlanta, camera: peers.yaml, pointing: {ra_deg: 60, dec_deg: 34}, exposure_s: 20, cadence_s: 20}

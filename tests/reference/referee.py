@@ -6,6 +6,7 @@ set that is a failure.
 """
 
 import dataclasses
+import gzip
 import json
 import os
 import pathlib
@@ -23,7 +24,7 @@ from astropy.wcs import WCS
 warnings.simplefilter("ignore", AstropyWarning)  # stale leap-second file, OBSGEO-L from -X
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-CATALOGUES = SOURCE / "build/data"
+CATALOGUES = SOURCE / "launch/catalogues"
 
 
 class Failure(Exception):
@@ -132,10 +133,10 @@ def first_frames(run):
     return [read_frame(path) for path in paths]
 
 
-def read_stars(path=CATALOGUES / "stars.dat"):
-    """KStars' stars.dat: J2000 places and motions, V and B-V as a structured array."""
+def read_stars(path=CATALOGUES / "stars.dat.gz"):
+    """The shipped stars: J2000 places and motions, V and B-V as a structured array."""
     rows = []
-    with open(need_file(path), encoding="latin-1") as file:
+    with gzip.open(need_file(path), "rt") as file:
         for line in file:
             if line.startswith("#") or len(line) < 56:
                 continue

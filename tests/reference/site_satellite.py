@@ -1,6 +1,6 @@
 """Direction and range from a site to satellites by skyfield, for tests/frames/test_site_satellite.cpp.
 
-Usage: site_satellite.py satellites.dat. Each row: UTC, dUT1 [s], TEME position [m] as skyfield's SGP4 gives
+Usage: site_satellite.py launch/catalogues/demo.tle. Each row: UTC, dUT1 [s], TEME position [m] as skyfield's SGP4 gives
 it, then the geometric right ascension, declination [rad], range [m], azimuth and elevation [rad].
 """
 import sys
@@ -10,13 +10,9 @@ from skyfield.api import EarthSatellite, load, wgs84
 ts = load.timescale(builtin=True)
 site = wgs84.latlon(33.777, -84.398, elevation_m=300.0)
 
-with open(sys.argv[1]) as catalogue:  # gpredict's: NAME=, TLE1=, TLE2= lines
-    facts = [line.rstrip().split("=", 1) for line in catalogue if "=" in line]
-elements, entry = [], {}
-for key, value in facts:
-    entry[key] = value
-    if key == "TLE2":
-        elements.append((entry["NAME"], entry["TLE1"], value))
+with open(sys.argv[1]) as catalogue:
+    lines = [line.rstrip() for line in catalogue if not line.startswith("#")]
+elements = list(zip(lines[::3], lines[1::3], lines[2::3]))
 
 count = 0
 for name, one, two in elements[::80]:

@@ -1,6 +1,6 @@
 """The truth's directions and ranges of satellites from the ground are skyfield's.
 
-    skyfield_directions.py RUN [--elements satellites.dat] [--dut1-s SECONDS]
+    skyfield_directions.py RUN [--elements FILE] [--dut1-s SECONDS]
 
 Every line of truth.jsonl of every sensor on the ground, at mid exposure: GCRS direction of the satellite
 one light time ago from the site now, and its geometric range. skyfield runs SGP4 and the Earth's rotation
@@ -24,10 +24,10 @@ TAI_MINUS_UTC_S = 37.0  # since 2017
 
 
 def read_elements(path):
-    """{catalogue number: (line 1, line 2)} of gpredict's file; the newest of each."""
+    """{catalogue number: (line 1, line 2)} of a TLE file; the newest of each."""
     newest = {}
     text = referee.need_file(path).read_text()
-    for first, second in re.findall(r"^TLE1=(1 .*)\nTLE2=(2 .*)$", text, re.MULTILINE):
+    for first, second in re.findall(r"^(1 .*)\n(2 .*)$", text, re.MULTILINE):
         year = int(first[18:20])
         epoch = (year + (1900 if year >= 57 else 2000), float(first[20:32]))
         number = int(first[2:7])
@@ -85,7 +85,7 @@ def judge(run, elements_path, dut1_s):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("run")
-    parser.add_argument("--elements", default=referee.CATALOGUES / "satellites.dat")
+    parser.add_argument("--elements", default=referee.CATALOGUES / "demo.tle")
     parser.add_argument("--dut1-s", type=float, default=0.0)
     options = parser.parse_args()
     referee.main(judge, options.run, options.elements, options.dut1_s)

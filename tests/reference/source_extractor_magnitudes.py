@@ -2,7 +2,7 @@
 
     source_extractor_magnitudes.py RUN
 
-The first frame of every sensor: stars of build/data/stars.dat through the header's WCS, unsaturated,
+The first frame of every sensor: stars of launch/catalogues/stars.dat.gz through the header's WCS, unsaturated,
 alone, well above the noise, within 12 deg of the middle of the frame (one zero point can't stand for
 the extinction of a whole sky), and with B-V within 0.3 mag of the median of those (the frames are in
 their own band, the catalogue in Johnson V). Tolerance: 0.05 mag rms, over all that were selected, up to

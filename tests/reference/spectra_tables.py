@@ -23,7 +23,7 @@ def hat_means(nodes, x, y):
 
 def table(name, nodes, values):
     cells = [f"{{{n:g}, {v:.4g}}}," for n, v in zip(nodes, values)]
-    print(f"constexpr Sample {name}[] = {{")
+    print(f"constexpr SpectrumSample {name}[] = {{")
     for i in range(0, len(cells), 6):
         print("    " + " ".join(cells[i : i + 6]))
     print("};")

@@ -1,7 +1,7 @@
 """Makes run directories that the referees must pass, or must not, by astropy, ERFA and sgp4 alone.
 
-One camera of 2048 x 2048 pixels, 19.5 deg, TAN, on the ground. Stars of build/data/stars.dat as
-Gaussians integrated over pixels, sky and noise; truth of some satellites of build/data/satellites.dat.
+One camera of 2048 x 2048 pixels, 19.5 deg, TAN, on the ground. Stars of launch/catalogues/stars.dat.gz as
+Gaussians integrated over pixels, sky and noise; truth of some satellites of launch/catalogues/demo.tle.
 """
 
 import json
@@ -95,7 +95,7 @@ def write(directory, shift_px=0.0, magnitude_error=0.0, clock_error_s=0.0):
     folder.mkdir(parents=True, exist_ok=True)
     counts = draw(referee.read_stars(), magnitude_error, np.random.default_rng(1)).astype(np.uint16)
     fits.writeto(folder / "frame-000001.fits", counts, header(shift_px), overwrite=True)
-    elements = skyfield_directions.read_elements(referee.CATALOGUES / "satellites.dat")
+    elements = skyfield_directions.read_elements(referee.CATALOGUES / "demo.tle")
     time = Time(MIDDLE, scale="utc")
     time = Time(time.jd1, time.jd2 + clock_error_s / 86400, format="jd", scale="utc")
     truths = (satellite_truth(*item, time) for item in sorted(elements.items())[::5])

@@ -54,7 +54,7 @@ band: {name: V, centre_m: 0.55e-6, width_m: 0.09e-6}
 
 
 def deep_stars():
-    places = [referee.CATALOGUES / "deepstars.dat", pathlib.Path(os.environ.get("DMISE_DATA", referee.SOURCE.parent / "shared/data")) / "stars/deepstars.dat"]
+    places = [referee.SOURCE / "build/data/deepstars.dat", pathlib.Path(os.environ.get("DMISE_DATA", referee.SOURCE.parent / "shared/data")) / "stars/deepstars.dat"]
     for path in places:
         if path.exists():
             return path
@@ -113,7 +113,7 @@ def count_stars(frame, csv, deep, is_synthetic):
     there = v_mag[near][(x > 0) & (x < columns - 1) & (y > 0) & (y < rows - 1)]
     for faint in (11, 12, 13):
         ours, theirs = (int(np.sum((m >= faint - 1) & (m < faint))) for m in (catalogue, there))
-        close = abs(ours - theirs) <= max(2, 0.03 * theirs)  # at the rim, of another magnitude in stars.dat, twice in the file
+        close = abs(ours - theirs) <= max(2, 0.03 * theirs)  # at the rim, of another magnitude in `kstars`, twice in the file
         referee.check(close, f"{frame.name}: {ours} stars of Tycho-2 of V {faint - 1} to {faint}, the file has {theirs}")
     if not is_synthetic:
         referee.check(len(synthetic) == 0, f"{frame.name}: no synthetic star")

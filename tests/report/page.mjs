@@ -52,6 +52,34 @@ try {
     await page.screenshot({path: `${screenshots}/page.png`, fullPage: true});
   }
 
+  if (wanted.widths) {
+    // On a screen of its own size, and without scrolling.
+    out.widths = [];
+    for (const width of wanted.widths) {
+      const narrow = await context.newPage();
+      narrow.setDefaultTimeout(patience);
+      narrow.on("pageerror", (error) => out.errors.push(String(error)));
+      await narrow.setViewportSize({width, height: width < 500 ? 844 : 900});
+      await narrow.goto(pathToFileURL(page_path).href, {waitUntil: "load"});
+      await narrow.waitForSelector("html[data-ready]");
+      await narrow.waitForFunction(() => !document.querySelector(".thumb canvas[data-frame]:not([data-drawn])"), null, {timeout: patience});
+      out.widths.push(await narrow.evaluate(() => ({
+        width: innerWidth,
+        page: document.documentElement.scrollWidth,
+        tables: [...document.querySelectorAll(".scroll")].filter((t) => t.scrollWidth > t.clientWidth).map((t) => t.ariaLabel),
+        cut: [...document.querySelectorAll("#summary td")].filter((c) => c.scrollWidth > c.clientWidth + 1).map((c) => c.textContent),
+        labels: [...document.querySelectorAll("figure svg[role=img]")].filter((s) => s.querySelector("[data-axis]"))
+          .map((s) => Math.min(...["x", "y"].map((axis) => s.querySelectorAll(`[data-axis=${axis}]`).length))),
+        astray: [...document.querySelectorAll(".interval")].filter((bar) => {
+          const b = bar.getBoundingClientRect(), d = bar.nextElementSibling.getBoundingClientRect(), y = (d.top + d.bottom) / 2;
+          return Math.abs((b.left + b.right - d.left - d.right) / 2) > 1 || y < b.top - 1 || y > b.bottom + 1;
+        }).length,
+      })));
+      if (screenshots) await narrow.screenshot({path: `${screenshots}/page-${width}.png`, fullPage: true});
+      await narrow.close();
+    }
+  }
+
   if (wanted.places) {
     // By the keyboard: the button of the frame has the focus, Enter opens it.
     await page.locator(`.thumb[data-open="${wanted.frame}"]`).focus();

@@ -7,6 +7,7 @@ keyboard, axe-core; names that would be markup; runs that were killed, and direc
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -30,7 +31,7 @@ except ImportError as missing:
 # A narrow field and a fisheye, whose directions near the horizon are refracted.
 SCENARIO = """\
 simulation: {start: 2018-01-21T00:15:00Z, duration_s: 50, tick_s: 5, seed: 1}
-objects: [{catalogue: gpredict, only: [GOES 13, GOES 14, GOES 15, GOES 16], radius_m: 5}]
+objects: [{catalogue: demo, only: [GOES 13, GOES 14, GOES 15, GOES 16], radius_m: 5}]
 stars: {catalogue: kstars}
 sensors:
   - {name: narrow, site: savannah, camera: small.yaml, pointing: {azimuth_deg: 168.7, elevation_deg: 52}, exposure_s: 20, cadence_s: 25}
@@ -139,6 +140,39 @@ def in_browser(run, data):
               f"sections {seen['sections']}")
 
 
+def seconds_of(text):
+    """Seconds that a page shows, and what rounding to the digits shown may hide."""
+    number, unit = text.split()
+    scale = 1e-3 if unit == "ms" else 1.0
+    return float(number) * scale, 0.51 * 10.0 ** -len(number.partition(".")[2]) * scale
+
+
+def costs_are_compared_alike(data, text):
+    """Measured seconds beside predicted ones are those of the effects that have a prediction: without detection and files."""
+    for k, sensor in enumerate(data["sensors"]):
+        rows = [p for p in data["plan"] if p["sensor"] == k]
+        told = re.search(rf"{sensor['name']}: (\S+ m?s) a frame; effects with a prediction take (\S+ m?s) of it, predicted (\S+ m?s)", text)
+        check(told, f"{sensor['name']}: measured and predicted costs stand together")
+        (whole, _), (measured, measured_error), (predicted, predicted_error) = map(seconds_of, told.groups())
+        of = [p for p in rows if p["predicted_s"] is not None]
+        check("detection" not in {p["effect"] for p in of} and abs(measured - sum(p["measured_s"] for p in of)) < measured_error
+              and abs(predicted - sum(p["predicted_s"] for p in of)) < predicted_error and measured < whole,
+              f"{sensor['name']}: {told.group(0)}")
+
+
+def fits_screens(run):
+    """Desks and phones: nothing is cut or must be scrolled sideways, frames are drawn unseen, axes can be read."""
+    seen = open_page(run / "index.html", widths=[1280, 1180, 390])
+    costs_are_compared_alike(data_of(run / "index.html"), seen["text"])
+    check(not seen["errors"], f"no error on any screen {seen['errors']}")
+    for screen in seen["widths"]:
+        of = f"{screen['width']} px: "
+        check(screen["page"] <= screen["width"] and not screen["tables"] and not screen["cut"],
+              f"{of}all fits, {screen['page']} px wide {screen['tables']} {screen['cut']}")
+        check(screen["labels"] and min(screen["labels"]) >= 3, f"{of}axes have three labels or more {screen['labels']}")
+        check(screen["astray"] == 0, f"{of}{screen['astray']} intervals are not at their dots")
+
+
 def hostile_names(binary, run, directory):
     """Names in the products that would be markup or script."""
     copy = directory / "hostile"
@@ -211,6 +245,7 @@ def test(binary, directory):
     refused(binary, run, directory)
     if WITH_BROWSER:
         in_browser(run, data)
+        fits_screens(run)
     hostile_names(binary, run, directory)
     killed(binary, run, directory)
     if not WITH_BROWSER:

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/products/frame_report.h"
 #include "nodes/runtime/node/frame_server.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/transport/socket.h"

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "dmise/v1/node.pb.h"
+#include "dmise/v1/time.pb.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/network_threads.h"

@@ -42,7 +42,7 @@ fi
 
 run_one() {
   local name=${1##*/} log=$reports/${1##*/}.log began=$SECONDS code=0
-  timeout 900 "$1" --gtest_brief=1 --gtest_output="xml:$log.xml" --gtest_filter="-$left_out" >"$log" 2>&1 || code=$?
+  (ulimit -t 900 && exec timeout 3600 "$1" --gtest_brief=1 --gtest_output="xml:$log.xml" --gtest_filter="-$left_out") >"$log" 2>&1 || code=$?
   printf '%-28s %4d s  %s\n' "$name" $((SECONDS - began)) \
     "$( ((code == 0)) && sed -n 's/^\[==========\] //p' "$log" | tail -n 1 || echo "FAILED with code $code")"
   ((code == 0)) || tail -n 40 "$log"

@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bench/simulated_frame.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/score/score.h"
 #include "tests/ingest/foreign_file.h"
+#include "tests/support/simulated_frame.h"
 
 namespace dmise {
 namespace {

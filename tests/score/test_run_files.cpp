@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/detection/detection_json.h"
+#include "core/products/frame_report.h"
 #include "core/score/json_record.h"
 #include "core/score/score.h"
 
@@ -201,7 +202,7 @@ TEST_F(RunFiles, RefusalsNameFileLineAndKey) {
             "frame: must be a whole number in range, got -3");
   EXPECT_EQ(
       refused("detections.jsonl", detection_line, "\"kind\":\"streak\"", "\"kind\":\"comet\""),
-      "kind: is unknown, got comet");
+      "kind: must be one of point, streak, got comet");
   EXPECT_EQ(refused("detections.jsonl", detection_line, "[0.01,0.002,0.03]", "[0.01,0.002]"),
             "covariance_px2: must be 3 numbers, got [0.01,0.002]");
   EXPECT_EQ(refused("truth.jsonl", truth_line, "\"sunlit\":1", "\"sunlit\":\"yes\""),

@@ -37,7 +37,9 @@ TEST(TrackRecord, RefusesAStatusThatThereIsNot) {
     track_of(JsonRecord(line, "tracks.jsonl:3"));
     FAIL();
   } catch (const ConfigError& error) {
-    EXPECT_STREQ(error.what(), "tracks.jsonl:3: status: is unknown, got tost");
+    EXPECT_STREQ(error.what(),
+                 "tracks.jsonl:3: status: must be one of tentative, confirmed, lost, did you mean "
+                 "lost?, got tost");
   }
 }
 

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/detection/detection_json.h"
+#include "core/products/frame_report.h"
 #include "core/score/wcs_record.h"
 
 namespace dmise {

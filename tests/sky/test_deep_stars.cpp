@@ -75,14 +75,13 @@ TEST(DeepStars, WhatIsWrongIsNamedInALine) {
             "deep: record 1: declination must be in [-90, 90] deg");
 }
 
-/// The whole of Tycho-2 with stars.dat.
+/// The whole of Tycho-2 with `kstars`.
 class Tycho2 : public testing::Test {
  protected:
   void SetUp() override {
     const std::string deep = test::deep_stars_path();
     if (deep.empty()) DMISE_SKIP() << "needs deepstars.dat, which ./dmise setup --tests fetches";
-    const std::string bright = test::catalogue_path("stars.dat");
-    DMISE_NEEDS_FILE(bright);
+    const std::string bright = test::catalogue_path("stars.dat.gz");
     static const StarReading read = parse_stars(read_text_file(deep), deep);
     static const StarMap merged = star_map_of(
         merge_stars(parse_stars(read_text_file(bright), bright).catalogue, read.catalogue));
@@ -104,7 +103,7 @@ class Tycho2 : public testing::Test {
 };
 
 // Of 2,412,252 records 3,301 repeat another. Tycho-2 has 2,539,913 stars in its main part (Hog et
-// al. 2000, A&A 355, L27); the file leaves the brightest to stars.dat.
+// al. 2000, A&A 355, L27); the file leaves the brightest to `kstars`.
 TEST_F(Tycho2, HoldsItsStarsOnce) {
   EXPECT_EQ(deep_->catalogue.size(), 2'412'252u - 3'301u);
   EXPECT_EQ(deep_->problems.size(), 0u);
@@ -138,7 +137,7 @@ TEST_F(Tycho2, NamedStarsAreWhereTheyArePublished) {
 
 // The stars that both catalogues have: places, V and B-V by two ways.
 TEST_F(Tycho2, AgreesWithStarsDatWhereBothHaveAStar) {
-  const std::string path = test::catalogue_path("stars.dat");
+  const std::string path = test::catalogue_path("stars.dat.gz");
   const StarMap bright = star_map_of(parse_stars(read_text_file(path), path).catalogue);
   std::vector<double> off_arcsec, v, bv;
   std::vector<std::uint32_t> found;

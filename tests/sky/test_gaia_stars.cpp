@@ -105,12 +105,15 @@ TEST(GaiaStars, TablesThatAreNoCatalogueAreRefusedInALine) {
   EXPECT_EQ(problem_of(fits_table({"ra", "dec", "phot_g_mean_mag"}, {"D", "8A", "E"}, {{1}})),
             "gaia.fits: column dec must hold one number a row");
   const std::string whole = barnards_table();
-  for (std::size_t size = 0; size < whole.size(); size += 80) {
+  constexpr std::size_t rows_end = 5760 + 80;  // headers and rows; then padding
+  for (std::size_t size = 0; size < rows_end; size += 80) {
     const std::string problem = problem_of(whole.substr(0, size));
     EXPECT_TRUE(problem.starts_with("gaia.fits: ")) << size << " " << problem;
     EXPECT_EQ(problem.find('\n'), problem.npos);
   }
   EXPECT_EQ(problem_of(whole.substr(0, 5760)), "gaia.fits: is truncated: 5760 of 8640 bytes");
+  EXPECT_EQ(parse_stars(whole.substr(0, rows_end), "gaia.fits").catalogue.size(),
+            parse_stars(whole, "gaia.fits").catalogue.size());
 }
 
 }  // namespace

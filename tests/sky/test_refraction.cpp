@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/atmospheric_refraction.h"
 #include "core/sky/scattered_moonlight.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
@@ -36,8 +37,9 @@ double dms(double d, double m, double s) { return (d + m / 60 + s / 3600) * deg;
 // motion 4155.10 (in RA times cos Dec), 3258.90 mas/yr, parallax 287.13 mas. At the epoch of
 // Hipparcos, J1991.25, the star stood 46 arcsec away.
 TEST(StarFile, KstarsPlacesAreOfJ2000AndMotionsAreOnTheSky) {
-  const std::string path = test::catalogue_path("stars.dat");
-  DMISE_NEEDS_FILE(path);
+  const std::string path = test::catalogue_path("stars.dat.gz");
+  EXPECT_EQ(sha256_hex(read_text_file(path)),
+            "79c9c6b5316623ccc4c9d8add5609fdd8dffac078ee67dbdf4b7e5c4030ce544");
   const StarReading stars = read(path);
   EXPECT_EQ(stars.catalogue.size(), 125982u);
   EXPECT_TRUE(stars.problems.empty());

@@ -19,16 +19,16 @@ inline std::string data_path(const std::string& name) {
   return (root ? std::string(root) : std::string(DMISE_SOURCE_DIR "/../shared/data")) + "/" + name;
 }
 
-/// Catalogues from Debian packages that `./dmise setup` unpacks: "stars.dat", "satellites.dat".
+/// The catalogues that are shipped: "stars.dat.gz", "demo.tle".
 inline std::string catalogue_path(const std::string& name) {
-  return std::string(DMISE_SOURCE_DIR "/build/data/") + name;
+  return std::string(DMISE_SOURCE_DIR "/launch/catalogues/") + name;
 }
 
 /// Tycho-2 as KStars has it: where `./dmise setup --tests` puts it, else in the reference data.
 /// Empty where there is none.
 inline std::string deep_stars_path() {
-  for (const std::string& path :
-       {catalogue_path("deepstars.dat"), data_path("stars/deepstars.dat")})
+  for (const std::string& path : {std::string(DMISE_SOURCE_DIR "/build/data/deepstars.dat"),
+                                  data_path("stars/deepstars.dat")})
     if (exists(path)) return path;
   return "";
 }

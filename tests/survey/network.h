@@ -27,7 +27,7 @@ inline constexpr const char* piece_of_all_sky =
 struct Network {
   /// `sensors`: lines of YAML without their indent.
   Network(const std::string& simulation, const std::vector<std::string>& sensors,
-          const std::string& objects = "[{catalogue: gpredict}]", int thread_count = 2)
+          const std::string& objects = "[{catalogue: demo}]", int thread_count = 2)
       : threads(thread_count) {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
     directory = std::filesystem::path(testing::TempDir()) /

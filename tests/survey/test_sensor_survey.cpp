@@ -97,7 +97,7 @@ TEST(SensorSurvey, ExposuresAreThoseAtNight) {
 
 TEST(SensorSurvey, AnyNumberOfThreadsGivesTheSame) {
   const auto by = [](int threads) {
-    Network network(evening, {zenith_camera("a")}, "[{catalogue: gpredict}]", threads);
+    Network network(evening, {zenith_camera("a")}, "[{catalogue: demo}]", threads);
     return network.survey();
   };
   const SensorSurvey one = by(1);

@@ -17,7 +17,7 @@ from harness import Run, check, main, wait_until
 
 SCENARIO = """simulation: {start: {uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}, duration_s: 20, tick_s: 10}
 objects:
-  - {catalogue: gpredict, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}
+  - {catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}
 stars: {catalogue: kstars}
 sensors:
   - name: eye
@@ -158,7 +158,7 @@ def bad_input(binary, directory):
     of("[1, 8]}}", "[0, 8]}}", "objects[0].radius_m.log_uniform[0]: must be > 0, got 0")
     of("GOES 15]}, tr", "GOES 99]}, tr", "sensors[0].pointing.target")
     of("cadence_s: 10", "cadence_s: {uniform: [2, 10]}", "must be <= cadence_s")
-    of("one_of: [GOES 13", "one_off: [GOES 13", "sensors[0].pointing.target: must be a text, got a mapping")
+    of("one_of: [GOES 13", "one_off: [GOES 13", "sensors[0].pointing.target.one_off: unknown key, did you mean one_of?")
     of("uniform: [2018-01-21T03", "uniform: [2018-02-30T03", "simulation.start.uniform[0]: must be a UTC time such as")
     for more, message in (("output: {planes: [noise]}", "output.planes: is for runs"),
                           ("output: {star_truth: on}", "output.star_truth: is for runs"),

@@ -17,7 +17,7 @@ band: {centre_m: 0.55e-6, width_m: 0.128e-6}
 # The Moon of that evening is at (345.7, -9.3) deg from Atlanta, 4 deg from the first two cameras' axes.
 SENSOR = "site: atlanta, exposure_s: 1, cadence_s: 5, sky: dark, pointing: {ra_deg: 345.7, dec_deg: -5.3, tracking: sidereal}"
 SCENARIO = f"""simulation: {{start: 2018-01-21T00:15:00Z, duration_s: 20, tick_s: 5}}
-objects: [{{catalogue: gpredict}}]
+objects: [{{catalogue: demo}}]
 stars: {{catalogue: kstars}}
 fusion: on
 accuracy: ACCURACY

@@ -50,7 +50,7 @@ def main(test):
             sys.exit(f"FAIL: {failure}")
 
 
-def write_scenario(directory, duration_s=3600, objects="gpredict", first="alpha", second="beta",
+def write_scenario(directory, duration_s=3600, objects="demo", first="alpha", second="beta",
                    on_silent_node="fail", silent_after_s=5.0, network="", name="scenario.yaml"):
     """`network`: further keys of that section, ", key: value"."""
     directory.mkdir(exist_ok=True)

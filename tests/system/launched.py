@@ -1,5 +1,5 @@
 """What a launch hands on: the command's seed to every sensor, the Earth orientation file to the digest of the run, as
-many starts as the scenario allows.
+many starts as the scenario allows. Links in its directory of logs are replaced, not followed.
 
     launched.py DMISE
 """
@@ -40,6 +40,17 @@ def test(binary, directory):
         code, said = made(binary, "run", directory / "measured.yaml", out)
         check(code == wanted, f"UT1 - UTC = 0.{dut1} s: code {code}")
     check("another run" in said, "with another Earth orientation file it is another run")
+
+    out, target = directory / "links", directory / "target"
+    (out / "logs").mkdir(parents=True)
+    target.write_text("of somebody else")
+    logs = [out / "logs" / name for name in ("time-master.log", "broker.log", "alpha.log", "orbit-node.log", "master.json",
+                                             "master.json.partial", "master.address.partial")]
+    for log in (*logs, out / "run.json.partial", out / "index.html.partial"):
+        log.symlink_to(target)
+    check(made(binary, "launch", scenario, out)[0] == 0, "a launch where links were planted")
+    check(target.read_text() == "of somebody else", "leaves the file that they name")
+    check(not any(log.is_symlink() for log in logs) and (out / "logs/alpha.log").exists(), "and replaces them")
 
     again = write_scenario(directory, duration_s=60, on_silent_node="restart", silent_after_s=1.0,
                            network=", restarts: 1, real_time: 12", name="again.yaml")

@@ -28,8 +28,8 @@ def loaded(pid):
 
 def test(binary, directory):
     path = write_scenario(directory, duration_s=100)
-    text = path.read_text().replace("objects: [{catalogue: gpredict}]\n",
-                                    "objects:\n  - {catalogue: gpredict}\n" + CARRIER)
+    text = path.read_text().replace("objects: [{catalogue: demo}]\n",
+                                    "objects:\n  - {catalogue: demo}\n" + CARRIER)
     path.write_text(text.replace("network:", SPACE + "network:", 1))
     out = directory / "out"
     with Run(binary, "launch", path, "--out", out) as run:

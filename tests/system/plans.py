@@ -5,6 +5,7 @@ bytes under every accuracy, a recorded plan is replayed to the same pixels, and 
 """
 
 import json
+import statistics
 import subprocess
 
 from harness import check, main, write_scenario
@@ -52,7 +53,24 @@ def test(binary, directory):
         dmise("launch", path, "--out", many)
         check(len(files(one)) > 6 and files(one) == files(many), f"one process and many: the same bytes for {accuracy}")
 
-    check("why" in dmise("explain", scenario("text", "standard")).stdout, "explain has a table")
+    short = dmise("explain", scenario("text", "standard")).stdout
+    check("effect" in short and "--all" in short and len(short.splitlines()) <= 50,
+          f"explain has one table of {len(short.splitlines())} lines for all sensors")
+    check("why" in dmise("explain", scenario("text", "standard"), "--all").stdout, "and with --all the reasons")
+    told = json.loads(dmise("check", scenario("text", "standard"), "--json").stdout)["sensors"]
+    explained = json.loads(dmise("explain", scenario("text", "standard"), "--json").stdout)["sensors"]
+    lines = [json.loads(line) for line in (directory / "one1/frames.jsonl").read_text().splitlines()]
+    for of, also in zip(told, explained):
+        limit = of["limiting_magnitude"]
+        measured = statistics.median(f["limiting_magnitude"] for f in lines if f["sensor"] == of["name"])
+        check(also["limiting_magnitude"] == limit and f"limiting magnitude V = {limit:.2f};" in short,
+              f"check and explain tell one limiting magnitude of {of['name']}, {limit:.2f}")
+        check(abs(measured - limit) < 0.1, f"and frames measure it: {measured:.2f}")
+    summary, *rest = (directory / "one1/run.json").read_text().splitlines()
+    check(json.loads(summary.removesuffix(",") + "}")["status"] == "complete" and len(summary) < 2000,
+          f"the first line of run.json is its summary, {len(summary)} characters")
+    check(sum(line.startswith('{"sensor":') for line in rest) == len(lines), "and each frame has a line of its own")
+
     first = directory / "one0"
     frames = json.loads((first / "run.json").read_text())["frames"]
     check(all(frame["plan"]["effects"] and frame["effects_s"] for frame in frames),

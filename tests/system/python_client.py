@@ -77,6 +77,20 @@ def hears_in_asyncio(binary, directory):
     check(ids and set(ids) <= {d.id for d in dmise.open_run(out).detections}, f"asyncio hears {len(ids)} detections")
 
 
+def names_a_topic_that_nobody_publishes(binary, directory):
+    out = directory / "misspelt"
+    with Run(binary, "launch", write_scenario(directory, duration_s=300), "--out", out) as run:
+        for wanted, meant in (("detektion/", "detection/"), ("frame/alhpa", "frame/alpha")):
+            try:
+                collections.deque(dmise.subscribe(address_of(out), "track/", wanted), maxlen=0)
+                said = ""
+            except ValueError as error:
+                said = str(error)
+            check(said == f"topic '{wanted}': nobody publishes it, did you mean '{meant}'?", f"subscribe: {said}")
+        run.interrupt()
+        run.finish()
+
+
 def says_failure(binary, directory):
     out = directory / "failing"
     with Run(binary, "launch", write_scenario(directory), "--out", out) as run:
@@ -146,6 +160,7 @@ def test(binary, directory):
     every_field()
     hears_a_run(binary, directory)
     hears_in_asyncio(binary, directory)
+    names_a_topic_that_nobody_publishes(binary, directory)
     says_failure(binary, directory)
     fetches_what_it_missed(binary, directory)
 

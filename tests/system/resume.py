@@ -4,6 +4,7 @@ interrupted, killed with -9, and the one going on with what the other has left.
     resume.py DMISE
 """
 
+import json
 import os
 import re
 import signal
@@ -53,7 +54,28 @@ def goes_on(binary, command, scenario, out, reference):
     check_same(out, reference, f"{command}: the products are those of a run that was not cut short")
 
 
+def parts_are_added_up(out, parts, least_s):
+    """Wall time and timeline of the whole run, not of its last part."""
+    record = json.loads((out / "run.json").read_text())
+    check(record["parts"] == parts and record["wall_s"] > least_s,
+          f"run.json: {record['parts']} parts, {record['wall_s']:.1f} s, of which the first took {least_s:.1f} s")
+    return record["wall_s"]
+
+
+def timeline_has_all_parts(binary, scenario, out):
+    cut_short(binary, "launch", scenario, out, signal.SIGINT, 5)
+    first_s = json.loads((out / "run.json").read_text())["wall_s"]
+    with Run(binary, "launch", scenario, "--out", out) as run:
+        check(run.finish()[0] == 0, "the second part ends the run")
+    whole_s = parts_are_added_up(out, 2, first_s)
+    page = (out / "index.html").read_text()
+    ticks = json.loads(page.split('<script type="application/json" id="run">')[1].split("</script>")[0])["ticks"]
+    check(ticks[0][0] == 0 and ticks[-1][2] <= whole_s and all(a[1] <= b[1] for a, b in zip(ticks, ticks[1:])),
+          f"the report's timeline begins at tick {ticks[0][0]} and ends at {ticks[-1][2]:.1f} s of {whole_s:.1f}")
+
+
 def test(binary, directory):
+    timeline_has_all_parts(binary, write_scenario(directory, duration_s=DURATION_S), directory / "timeline")
     scenario = write_scenario(directory, duration_s=DURATION_S)
     reference = directory / "reference"
     with Run(binary, "run", scenario, "--out", reference) as run:

@@ -14,7 +14,7 @@ import subprocess
 from harness import check, main
 
 SCENARIO = """simulation: {start: 2018-01-21T00:15:00Z, duration_s: 90, tick_s: 5, seed: 1}
-objects: [{catalogue: gpredict}]
+objects: [{catalogue: demo}]
 stars: {catalogue: kstars}
 sensors:
   - {name: metop, platform: "29499", camera: wide-field-cmos, pointing: {ra_deg: 85.2, dec_deg: 0.7}, exposure_s: 2, cadence_s: 15, sky: space}

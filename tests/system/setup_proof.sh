@@ -16,7 +16,7 @@ digest_of_files() {
   } | sha256sum | cut -c 1-16
 }
 
-setup_proof() { echo "$proofs/bare-root-$(digest_of_files nothing).proof"; }
+setup_proof() { echo "$proofs/${suite-bookworm}-$(digest_of_files nothing).proof"; }
 
 # write_proof FILE SECONDS
 write_proof() {

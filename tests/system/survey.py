@@ -24,7 +24,7 @@ band: {centre_m: 0.55e-6, width_m: 0.128e-6}
 SITES = {"atlanta": "atlanta", "tololo": "cerro-tololo", "palma": "la-palma", "day": "haleakala"}
 
 
-def write(directory, name="network.yaml", duration_s=1500, objects="[{catalogue: gpredict}]", sites=None, more=""):
+def write(directory, name="network.yaml", duration_s=1500, objects="[{catalogue: demo}]", sites=None, more=""):
     (directory / "piece.yaml").write_text(CAMERA)
     path = directory / name
     text = SCENARIO % (duration_s, objects)
@@ -65,7 +65,10 @@ def test(binary, directory):
     check(abs(choice["all"]["detected"] - choice["detected_per_night"]) < 1e-6, "the chosen network detects that many")
     check(choice["all"]["detected"] <= everything["detected"] + 1e-9, "fewer sites never detect more")
     root = xml.etree.ElementTree.parse(out / "map.svg").getroot()
-    check("objects detected" in "".join(root.itertext()), "map.svg is XML")
+    words = "".join(root.itertext())
+    check("objects detected" in words, "map.svg is XML")
+    check("longitude [deg]" in words and "latitude [deg]" in words and "60 W" in words, "its axes have names and units")
+    check((out / "map.svg").read_text().count("#5a5a5a") > 0, "it has coastlines")
     check((out / "map.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n", "map.png is a PNG")
 
     first = files(out)

@@ -11,9 +11,11 @@ import random
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import urllib.parse
+import zlib
 
 from harness import CAMERA, Run, check, check_same, first_frame, main, wait_until
 
@@ -21,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODULES = ROOT / "build/node/node_modules"
 SCENARIO = """\
 simulation: {{start: 2018-01-21T00:15:00Z, duration_s: {duration_s}, tick_s: 5, seed: 1}}
-objects: [{{catalogue: gpredict}}]
+objects: [{{catalogue: demo}}]
 stars: {{catalogue: kstars}}
 sensors:
   - {{name: alpha, site: atlanta, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 10}}
@@ -72,11 +74,17 @@ def another_pace_changes_nothing(binary, directory):
         master = (paced / "logs/master.address").read_text().strip()
         wait_until(lambda: "tick 0 of" in status_of(binary, master), "the first tick")
         check("pace: 0.001 times real time" in status_of(binary, master), "a run keeps the pace of its scenario")
+        stepped = subprocess.run([binary, "clock", "step", master, "2"], capture_output=True, text=True)
+        check(stepped.returncode == 0, f"clock step ADDRESS 2 makes two ticks {stepped.stderr.strip()}")
+        subprocess.run([binary, "clock", "go-on", master], check=True, capture_output=True)
         done = subprocess.run([binary, "clock", "pace", master, "-1"], capture_output=True, text=True)
         check(done.returncode == 2, f"a pace that is none is refused: {done.stderr.strip().splitlines()[0]}")
         subprocess.run([binary, "clock", "pace", master, "0"], check=True, capture_output=True)
         code, _ = run.finish()
         check(code == 0, "as fast as possible it ends" + (run.stderr[-300:] if code else ""))
+    log = (paced / "logs/time-master.log").read_text()
+    for asked in ("step 2 ticks", "go on", "run as fast as possible"):
+        check(f"asked to {asked}" in log, f"the log of the clock says that it was asked to {asked}")
     check_same(paced, whole, "and its products are those of any other pace")
 
 
@@ -88,6 +96,15 @@ def truths_of(out, sensor, frame):
     """How many objects are in a frame, by the sensor's own file."""
     lines = (out / sensor / "truth.jsonl").read_text().splitlines()
     return sum(t["in_frame"] for t in map(json.loads, lines) if t["frame"] == frame)
+
+
+def a_dead_address_is_told(binary):
+    with socket.socket() as nobody:  # bound, and nobody listens
+        nobody.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{nobody.getsockname()[1]}"
+        done = subprocess.run([binary, "view", address, "--answer-within", "1"], capture_output=True, text=True, timeout=60)
+    check(done.returncode == 1 and f"{address}: no time-master answers within 1 s" in done.stderr,
+          f"view of a dead address ends: {done.returncode} {done.stderr.strip()[-200:]}")
 
 
 def hostile_clients_do_not_disturb(url, seed=7):
@@ -146,7 +163,35 @@ def a_browser_shows_it(url, directory, out):
     check(found["violations"] == [], f"axe-core finds no violation in {found['checked']} checks {found['violations']}")
 
 
+def dark_preview(path, columns=640, rows=480):
+    """A picture as `preview` draws a field of few stars: sky and noise in the darkest eighth of its greys."""
+    draw = random.Random(1)
+    pixels = [bytearray(min(255, max(0, round(draw.gauss(31, 11)))) for _ in range(columns)) for _ in range(rows)]
+    for _ in range(60):
+        pixels[draw.randrange(rows)][draw.randrange(columns)] = draw.randrange(100, 256)
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", columns, rows, 8, 0, 0, 0, 0)) +
+                     chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in pixels))) + chunk(b"IEND", b""))
+
+
+def it_fits_screens(binary, directory):
+    dark_preview(directory / "dark.png")
+    script = pathlib.Path(__file__).parent / "view/layout.mjs"
+    done = subprocess.run(["node", script, MODULES, shutil.which("chromium"), binary.parent.parent / "dashboard", directory / "dark.png",
+                           directory], capture_output=True, text=True, timeout=280, env=os.environ | {"HOME": str(directory)})
+    check(done.returncode == 0, "a browser shows a run of eight sites" + done.stderr.strip()[-600:])
+    found = json.loads(done.stdout.strip().splitlines()[-1])
+    print(json.dumps(found))
+    check(found["errors"] == [], f"without an error {found['errors']}")
+    check(found["names"] >= 7 and found["meeting"] == 0, f"of {found['names']} names on the globe {found['meeting']} meet others")
+    check(50 <= found["median"] <= 130, f"half of a dark frame's pixels are shown brighter than {found['median']} of 255")
+    phone = found["phone"]
+    check(abs(phone["seen_px"] - phone["frame_px"]) <= 1 and phone["frame_px"] > 250 and phone["wide_px"] <= 390,
+          f"a phone shows {phone['seen_px']} of {phone['frame_px']} px of the frame, and nothing is wider than it: {phone['wide_px']} px")
+
+
 def test(binary, directory):
+    a_dead_address_is_told(binary)
     killing_it_changes_nothing(binary, directory)
     another_pace_changes_nothing(binary, directory)
     scenario, out = write(directory, "long.yaml", 36000, 20), directory / "out"
@@ -160,6 +205,8 @@ def test(binary, directory):
         run.interrupt()
         run.finish()
         run.nothing_left()
+    if not missing:
+        it_fits_screens(binary, directory)
     if missing:
         print(f"skipped: no browser shows the page: there is no {missing}")
         sys.exit(77)

@@ -285,6 +285,42 @@ TEST(Coordinator, ClosesTheTopicsOfADroppedNodeFromWhereTheSlowestIs) {
   EXPECT_EQ(master.members().at("camera").closed_from, 1);
 }
 
+TEST(Coordinator, BeginsUnderDropWithoutANodeThatDoesNotJoin) {
+  auto o = options({"camera", "recorder"});
+  o.on_silent = SilentPolicy::drop;
+  o.start_within = seconds(10);
+  Coordinator master(o);
+  master.join(node("recorder", {}, {"detection"}), seconds(1));
+  const auto live_until = [&](int end) {
+    for (int s = 1; s <= end; ++s) {
+      master.heartbeat("recorder", false, 0, seconds(s));
+      master.check(seconds(s));
+    }
+  };
+  live_until(9);
+  EXPECT_EQ(master.phase(), Phase::gathering);
+  live_until(10);
+  EXPECT_EQ(master.phase(), Phase::connecting);
+  master.ready("recorder", seconds(10));
+  EXPECT_EQ(master.phase(), Phase::running);
+  const auto& lost = master.members().at("camera");
+  EXPECT_TRUE(lost.dropped);
+  EXPECT_THAT(lost.node.produces, ElementsAre("detection"));
+  EXPECT_EQ(lost.closed_from, 0);
+}
+
+TEST(Coordinator, DropsANodeThatDiesWhileOthersConnect) {
+  auto o = options({"camera", "recorder"});
+  o.on_silent = SilentPolicy::drop;
+  Coordinator master(o);
+  master.join(node("camera", {"detection"}));
+  master.join(node("recorder", {}, {"detection"}));
+  master.ready("recorder", seconds(8));
+  master.check(seconds(9));
+  EXPECT_EQ(master.phase(), Phase::running);
+  EXPECT_TRUE(master.members().at("camera").dropped);
+}
+
 TEST(Coordinator, NeverGoesOnWithoutTheBroker) {
   auto o = options({"broker", "camera"});
   o.on_silent = SilentPolicy::drop;

@@ -46,6 +46,30 @@ TEST(HostBarrier, TellsATickOnceAllHaveDoneIt) {
   EXPECT_THAT(host.told(), IsEmpty());
 }
 
+TEST(HostBarrier, GivesUpAProcessWhoseConnectionBrokeWhenAnotherAsksForItsName) {
+  Host host;
+  host.barrier.give_up("a");
+  EXPECT_THAT(host.barrier.take_news(), IsEmpty());
+  host.barrier.suspect("a", seconds(1));
+  host.barrier.give_up("a");
+  const auto news = host.barrier.take_news();
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_EQ(news[0].what, What::lost);
+  EXPECT_EQ(news[0].name, "a");
+  EXPECT_FALSE(host.barrier.has_live_process("a"));
+}
+
+TEST(HostBarrier, RepeatsItsNewsOnceTheMasterKnowsItAgain) {
+  Host host;
+  host.barrier.leave("b", false);
+  host.barrier.take_news();
+  host.barrier.repeat_news();
+  const auto news = host.barrier.take_news();
+  ASSERT_EQ(news.size(), 2u);
+  EXPECT_EQ(news[0].what, What::found);
+  EXPECT_EQ(news[1].what, What::lost);
+}
+
 TEST(HostBarrier, TellsEveryTickInTurnWhateverTheOrderOfItsNodes) {
   Host host;
   for (Tick tick = 0; tick < 3; ++tick) host.done("a", tick);

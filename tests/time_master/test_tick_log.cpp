@@ -30,6 +30,24 @@ TEST(TickLog, BeginsWhereAnInterruptedRunGoesOn) {
   EXPECT_EQ(log.records()[0].tick, 7);
 }
 
+// A sensor computes 4 s of a tick, then fusion 1 s: who ends the tick is not who was waited for.
+TEST(TickLog, BooksWaitingToWhoComputesAndNotToWhoIsLast) {
+  TickLog log;
+  EXPECT_FALSE(log.is_wait_due(seconds(9)));  // before the start
+  log.grant(0, 0, seconds(10));
+  EXPECT_FALSE(log.is_wait_due(seconds(10)));
+  EXPECT_TRUE(log.is_wait_due(seconds(14)));
+  log.wait({"camera", "telescope"}, seconds(14));
+  log.wait({"fusion"}, seconds(15));
+  log.settle(0, seconds(15), "fusion");
+  log.wait({}, seconds(20));     // paused
+  log.grant(0, 1, seconds(25));  // until then the clock kept its pace
+  log.wait({"fusion"}, seconds(27));
+  const std::map<std::string, double> expected{
+      {"camera", 4.0}, {"fusion", 3.0}, {"telescope", 4.0}};
+  EXPECT_EQ(log.waited_for_s(), expected);
+}
+
 TEST(TickLog, KeepsTheLatestTicks) {
   TickLog log;
   for (Tick tick = 0; tick < 30'000; ++tick) {

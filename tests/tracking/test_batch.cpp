@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "bench/tracking_trial.h"
 #include "core/base/units.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/tracking_trial.h"
 #include "core/base/error.h"
 #include "core/base/rng.h"
 #include "core/base/units.h"
 #include "core/tracking/initial_orbit.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

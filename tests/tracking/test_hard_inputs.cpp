@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/tracking_trial.h"
 #include "core/base/error.h"
 #include "core/base/rng.h"
 #include "core/base/units.h"
 #include "core/tracking/filter.h"
 #include "core/tracking/initial_orbit.h"
 #include "core/tracking/lambert.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

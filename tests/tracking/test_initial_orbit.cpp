@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "bench/tracking_trial.h"
 #include "core/base/units.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

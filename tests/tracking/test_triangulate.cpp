@@ -5,9 +5,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "bench/tracking_trial.h"
 #include "core/base/units.h"
 #include "core/tracking/propagate.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

@@ -4,11 +4,11 @@
 #include <cstdlib>
 #include <exception>
 
-#include "bench/tracking_trial.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/tracking/filter.h"
 #include "core/tracking/initial_orbit.h"
+#include "tests/support/tracking_trial.h"
 
 namespace dmise {
 namespace {

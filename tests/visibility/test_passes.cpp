@@ -28,7 +28,6 @@ class AgainstSkyfield : public testing::Test {
     Pass ours;
   };
   void SetUp() override {
-    DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
     std::vector<MeanElements> elements;
     for (const MeanElements& e : test::debian_catalogue())
       for (const SkyfieldPass& s : skyfield)

@@ -62,7 +62,6 @@ std::vector<Pass> followed_passes(bool geometric) {
 // stands off the middle by its refraction, which is 6 arcmin (half the field) at 8.9 deg and 8.5
 // arcmin (to the corner) at 6.0 deg by Bennett 1982.
 TEST(Pointing, ATargetIsInTheFieldOfVisibleAsItIsInFrames) {
-  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
   const auto apparent = followed_passes(false), geometric = followed_passes(true);
   ASSERT_FALSE(apparent.empty());
   ASSERT_EQ(apparent.size(), geometric.size());

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/sightings_one_by_one.h"
 #include "core/orbit/catalogue.h"
 #include "core/time/iso8601.h"
 #include "core/visibility/passes.h"
 #include "tests/support/data.h"
+#include "tests/support/sightings_one_by_one.h"
 
 namespace dmise::test {
 
@@ -66,7 +66,7 @@ struct Watch {
 };
 
 inline std::vector<MeanElements> debian_catalogue() {
-  return read_catalogue(catalogue_path("satellites.dat")).elements;
+  return read_catalogue(catalogue_path("demo.tle")).elements;
 }
 
 }  // namespace dmise::test

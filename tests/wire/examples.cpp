@@ -1,5 +1,6 @@
 #include "tests/wire/examples.h"
 
+#include "core/products/frame_report.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise::test {
@@ -325,9 +326,10 @@ Receiver receiver_of_examples() {
   Receiver receiver(example_run());
   for (const std::string& topic :
        {std::string(roster_topic), std::string(objects_topic), std::string(environment_topic),
-        std::string(site_prefix) + sensor, std::string(frame_prefix) + sensor,
-        std::string(detection_prefix) + sensor, std::string(truth_prefix) + sensor,
-        std::string(track_prefix) + "fusion-node", std::string(task_prefix) + sensor})
+        std::string(actor_prefix) + "gnc", std::string(site_prefix) + sensor,
+        std::string(frame_prefix) + sensor, std::string(detection_prefix) + sensor,
+        std::string(truth_prefix) + sensor, std::string(track_prefix) + "fusion-node",
+        std::string(task_prefix) + sensor})
     receiver.allow(topic, "source", 1);
   return receiver;
 }

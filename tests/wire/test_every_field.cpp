@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/detection/detection_json.h"
+#include "core/products/frame_report.h"
 #include "core/products/task_json.h"
 #include "core/products/track_json.h"
 #include "dmise/v1/detection.pb.h"

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/products/frame_report.h"
 #include "nodes/wire/state_codec.h"
 #include "nodes/wire/state_rules.h"
 #include "tests/wire/examples.h"
@@ -159,8 +160,18 @@ TEST(Wire, RefusesWhatIsNotOfThisRunPublisherTopicOrTick) {
 
 TEST(Wire, RefusesAStateOnATopicThatIsNotItsOwn) {
   Example e = examples(1)[2];
-  e.topic = objects_topic;
-  EXPECT_EQ(refusal(sealed(e)), Refusal::topic);
+  for (const std::string& topic : {std::string(objects_topic), std::string(actor_prefix) + "gnc"}) {
+    e.topic = topic;
+    EXPECT_EQ(refusal(sealed(e)), Refusal::topic);
+  }
+}
+
+TEST(Wire, AnActorHasStatesOnATopicOfItsOwn) {
+  Example e = states_example();
+  e.topic = std::string(actor_prefix) + "gnc";
+  EXPECT_EQ(refusal(sealed(e)), std::nullopt);
+  ++e.tick;
+  EXPECT_EQ(refusal(sealed(e)), Refusal::tick);
 }
 
 TEST(Wire, RefusesAStateOfAnotherTickThanItsEnvelope) {

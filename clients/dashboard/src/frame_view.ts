@@ -6,6 +6,8 @@ const deg = 180 / Math.PI;
 
 export class FrameView {
   private image: HTMLImageElement | null = null;
+  private readonly stretched = document.createElement("canvas"); // the image by `stretch`
+  private stretch = 1;
   private loading = "";
   private failed = "";
   private shown = "";
@@ -20,8 +22,12 @@ export class FrameView {
     canvas.addEventListener("mouseleave", () => this.describe());
   }
 
-  show(sensor: Sensor | undefined, detections: Detection[], truths: Truth[], brightness: number): void {
-    this.canvas.style.setProperty("--brightness", String(brightness));
+  /** `stretch`: 0 as stored, 1 by percentiles, more: brighter. */
+  show(sensor: Sensor | undefined, detections: Detection[], truths: Truth[], stretch: number): void {
+    if (stretch !== this.stretch) {
+      this.stretch = stretch;
+      this.make_stretched();
+    }
     this.sensor = sensor ?? null;
     this.detections = sensor ? detections.filter((d) => d.sensor === sensor.name && d.frame === sensor.frame) : [];
     this.truths = sensor ? truths.filter((t) => t.sensor === sensor.name && t.frame === sensor.frame) : [];
@@ -38,7 +44,7 @@ export class FrameView {
     const image = new Image();
     const done = (loaded: boolean): void => {
       this.loading = "";
-      if (loaded) { this.image = image; this.shown = url; } else { this.failed = url; this.image = null; this.shown = ""; }
+      if (loaded) { this.image = image; this.shown = url; this.make_stretched(); } else { this.failed = url; this.image = null; this.shown = ""; }
       this.canvas.dataset.shown = this.shown;
       this.draw();
       this.describe();
@@ -47,6 +53,30 @@ export class FrameView {
     image.onload = () => done(true);
     image.onerror = () => done(false);
     image.src = url;
+  }
+
+  /** The preview's sky and its noise are dark, to leave room for bright stars: shows from the 1 % quantile of its pixels to the
+   * 99.8 %, and at least six times what lies between the 1 % quantile and the median. */
+  private make_stretched(): void {
+    const { image, stretched } = this;
+    if (!image) return;
+    stretched.width = image.naturalWidth;
+    stretched.height = image.naturalHeight;
+    const context = stretched.getContext("2d", { willReadFrequently: true })!;
+    context.drawImage(image, 0, 0);
+    if (this.stretch === 0) return;
+    const pixels = context.getImageData(0, 0, stretched.width, stretched.height), data = pixels.data;
+    const counts = new Uint32Array(256);
+    for (let i = 0; i < data.length; i += 4) ++counts[data[i]!]!;
+    const quantile = (share: number): number => {
+      let value = 0, below = counts[0]!;
+      while (value < 255 && below < share * (data.length / 4)) below += counts[++value]!;
+      return value;
+    };
+    const low = quantile(0.01), high = Math.max(quantile(0.998), low + 6 * (quantile(0.5) - low), low + 16);
+    const shown = Uint8Array.from({ length: 256 }, (_, v) => 255 * Math.min(1, Math.max(0, (this.stretch * (v - low)) / (high - low))) ** 0.7);
+    for (let i = 0; i < data.length; i += 4) data[i] = data[i + 1] = data[i + 2] = shown[data[i]!]!;
+    context.putImageData(pixels, 0, 0);
   }
 
   private scale(): number { return this.sensor ? this.canvas.width / this.sensor.columns : 1; }
@@ -63,7 +93,7 @@ export class FrameView {
     if (!sensor) return;
     const current = this.shown === `/frames/${encodeURIComponent(sensor.name)}/${sensor.frame}.png`;
     const same_sensor = this.shown.startsWith(`/frames/${encodeURIComponent(sensor.name)}/`);
-    if (image && same_sensor) context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    if (image && same_sensor) context.drawImage(this.stretched, 0, 0, canvas.width, canvas.height);
     if (!current && this.image) return; // the marks are of a picture that is on its way
     const scale = this.scale();
     this.draw_truth(context, scale);
@@ -103,9 +133,9 @@ export class FrameView {
   private describe(): void {
     const { sensor } = this;
     if (!sensor) { this.note.textContent = "No frame yet."; return; }
-    const found = sensor.shutter_closed ? "the shutter is closed" : sensor.detection_off ? "detection is off" : `${sensor.detections} detections, limit ${sensor.limiting_magnitude.toFixed(1)} mag`;
+    const found = sensor.shutter_closed ? "the shutter is closed" : sensor.detection_off ? "detection is off" : `${sensor.detections} detection${sensor.detections === 1 ? "" : "s"}, limit V ${sensor.limiting_magnitude.toFixed(1)}`;
     const missing = this.failed.endsWith(`/${sensor.frame}.png`) ? " Its sensor does not serve it any more (--products DIRECTORY has previews of all, with output: {png: true})." : "";
-    const truth = this.truths.length ? ` ${this.truths.length} objects in truth.` : "";
+    const truth = this.truths.length ? ` ${this.truths.length} object${this.truths.length === 1 ? "" : "s"} in truth.` : "";
     this.note.textContent = `${sensor.name}, frame ${sensor.frame}, RA ${(sensor.ra_rad * deg).toFixed(2)} Dec ${(sensor.dec_rad * deg).toFixed(2)}, ${found}.${truth}${missing}`;
   }
 

@@ -2,6 +2,7 @@
 import * as Cesium from "@cesium/engine";
 import type { Detection, Objects, Sensor, Task, Track } from "./messages";
 import { Horizon } from "./horizon";
+import { keep_apart } from "./labels";
 import { LineSet } from "./line_set";
 import { ObjectCloud } from "./object_cloud";
 import { colour_of, palette } from "./palette";
@@ -33,6 +34,7 @@ export class Globe {
   private started = false;
   pictures = 0; // of the objects
   scenes = 0; // of the globe
+  named: { left: number; top: number; right: number; bottom: number }[] = []; // where names stand, in pixels of the canvas
   private scene_ms = 0;
   private scene_wanted = false;
   private sun_ms = 0;
@@ -58,6 +60,7 @@ export class Globe {
     for (const part of [this.fields, this.detections, this.cues, this.track_points, this.sensor_points,
       this.labels, this.track_labels]) scene.primitives.add(part);
     this.cloud = new ObjectCloud(this.widget.container, palette.object);
+    scene.preRender.addEventListener(() => { this.named = keep_apart(scene, [this.labels, this.track_labels], this.sensor_points); });
     scene.postRender.addEventListener(() => { ++this.scenes; this.draw(); });
     this.whole();
     const canvas = this.widget.canvas;
@@ -117,7 +120,7 @@ export class Globe {
         this.labels.add({
           position: place, text: state === "alive" ? sensor.name : `${sensor.name} (${state})`, font: "13px sans-serif",
           fillColor: colour(palette.text), outlineColor: colour(palette.ground), outlineWidth: 3,
-          style: Cesium.LabelStyle.FILL_AND_OUTLINE, pixelOffset: new Cesium.Cartesian2(10, -10),
+          style: Cesium.LabelStyle.FILL_AND_OUTLINE,
         });
       this.add_field(sensor, place, colour_of(state), shown ? 0.95 : 0.5);
     }
@@ -165,7 +168,6 @@ export class Globe {
         this.track_labels.add({
           position: place, text: track.name || `track ${track.id}`, font: "12px sans-serif", fillColor: colour(palette.track),
           outlineColor: colour(palette.ground), outlineWidth: 3, style: Cesium.LabelStyle.FILL_AND_OUTLINE,
-          pixelOffset: new Cesium.Cartesian2(8, 4),
         });
     }
     this.redraw();

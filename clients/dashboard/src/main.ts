@@ -85,7 +85,7 @@ function take_status(news: Status): void {
   if (news.cause) notes.push(`Failed: ${news.cause}.`);
   if (news.missing.length) notes.push(`Missing: ${news.missing.join(", ")}.`);
   if (news.holding.length) notes.push(`The clock waits for ${news.holding.join(", ")}.`);
-  if (news.overruns) notes.push(`${news.overruns} ticks late, at most ${news.worst_lag_s.toFixed(2)} s.`);
+  if (news.overruns) notes.push(`${news.overruns} tick${news.overruns === 1 ? "" : "s"} late, at most ${news.worst_lag_s.toFixed(2)} s.`);
   by_id("run-note").textContent = notes.join(" ");
   show_nodes(by_id("health"), news);
   rate_chart.add(performance.now() / 1e3, news.rate);
@@ -176,7 +176,7 @@ document.addEventListener("keydown", (event) => {
 // For tests and for whoever measures.
 Object.assign(window, {
   dmise: {
-    pictures: () => globe.pictures, scenes: () => globe.scenes, objects: () => globe.objects, statuses: () => statuses, time_s: () => time_s,
+    pictures: () => globe.pictures, named: () => globe.named, scenes: () => globe.scenes, objects: () => globe.objects, statuses: () => statuses, time_s: () => time_s,
     screen_of: (sensor: string) => globe.screen_of(sensor), pace: () => status?.pace, frame: (sensor: string) => sensors.find((s) => s.name === sensor)?.frame,
     draw: (on: boolean) => { globe.drawing = globe.widget.useDefaultRenderLoop = on; },
   },

@@ -1,16 +1,23 @@
 // Charts of lines and points over two axes, and plots of the sky.
 
+/** Values with a label: three or more, of round numbers. */
 function ticksOf(least, most, log) {
   if (log) {
-    const ticks = [], decades = Math.log10(most / least);
-    for (let e = Math.floor(Math.log10(least)); e <= Math.ceil(Math.log10(most)); ++e)
-      for (const m of decades > 3 ? [1] : [1, 2, 5])
-        if (m * 10 ** e >= least * 0.999 && m * 10 ** e <= most * 1.001) ticks.push(m * 10 ** e);
-    return ticks;
+    const decades = Math.log10(most / least);
+    for (const digits of [[1], [1, 2, 5], [1, 2, 3, 5, 7]]) {
+      const ticks = [];
+      for (let e = Math.floor(Math.log10(least)); e <= Math.ceil(Math.log10(most)); ++e)
+        for (const m of digits) if (m * 10 ** e >= least * 0.999 && m * 10 ** e <= most * 1.001) ticks.push(m * 10 ** e);
+      if (ticks.length >= (decades > 3 ? 3 : 4)) return ticks;
+    }
   }
-  const raw = (most - least) / 6, power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].find((m) => m * power >= raw * 0.999) * power, ticks = [];
-  for (let k = Math.ceil(least / step - 1e-9); k * step <= most + step * 1e-9; ++k) ticks.push(k * step);
+  let ticks = [];
+  for (let parts = 6; ticks.length < 3 && parts < 100; parts *= 1.5) {
+    const raw = (most - least) / parts, power = 10 ** Math.floor(Math.log10(raw));
+    const step = [1, 2, 5, 10].find((m) => m * power >= raw * 0.999) * power;
+    ticks = [];
+    for (let k = Math.ceil(least / step - 1e-9); k * step <= most + step * 1e-9; ++k) ticks.push(k * step);
+  }
   return ticks;
 }
 const short = (v) => {
@@ -20,7 +27,7 @@ const short = (v) => {
 
 let charts = 0;
 function chart({title, note, x, y, series, bands = [], height = 300}) {
-  const wide = 560, box = {left: 64, right: 14, top: 10, bottom: 44};
+  const wide = page.clientWidth < 600 ? 360 : 560, box = {left: 70, right: 14, top: 10, bottom: 44};
   const points = series.flatMap((s) => s.lines.flat());
   if (!points.length) return null;
   const range = (axis, k) => {
@@ -46,15 +53,15 @@ function chart({title, note, x, y, series, bands = [], height = 300}) {
   }
   for (const t of ticksOf(sx.least, sx.most, x.log)) {
     parts.push(svg("path", {class: "grid", d: `M${sx.of(t)} ${box.top}V${height - box.bottom}`}));
-    parts.push(svg("text", {x: sx.of(t), y: height - box.bottom + 16, "text-anchor": "middle"}, (x.format || short)(t)));
+    parts.push(svg("text", {"data-axis": "x", x: sx.of(t), y: height - box.bottom + 16, "text-anchor": "middle"}, (x.format || short)(t)));
   }
   for (const t of ticksOf(sy.least, sy.most, y.log)) {
     parts.push(svg("path", {class: "grid", d: `M${box.left} ${sy.of(t)}H${wide - box.right}`}));
-    parts.push(svg("text", {x: box.left - 6, y: sy.of(t) + 4, "text-anchor": "end"}, short(t)));
+    parts.push(svg("text", {"data-axis": "y", x: box.left - 6, y: sy.of(t) + 4, "text-anchor": "end"}, short(t)));
   }
   parts.push(svg("rect", {class: "frame", x: box.left, y: box.top, width: wide - box.left - box.right, height: height - box.top - box.bottom}));
   parts.push(svg("text", {class: "dimtext", x: (box.left + wide - box.right) / 2, y: height - 6, "text-anchor": "middle"}, x.label));
-  parts.push(svg("text", {class: "dimtext", transform: `translate(14 ${(height - box.bottom + box.top) / 2}) rotate(-90)`, "text-anchor": "middle"}, y.label));
+  parts.push(svg("text", {class: "dimtext", transform: `translate(12 ${(height - box.bottom + box.top) / 2}) rotate(-90)`, "text-anchor": "middle"}, y.label));
   for (const s of series) {
     const group = svg("g", {class: s.colour, stroke: "currentColor", fill: "currentColor"});
     for (const list of s.lines) {
@@ -65,7 +72,8 @@ function chart({title, note, x, y, series, bands = [], height = 300}) {
       if (s.mark) for (const p of good) {
         const dot = shape(s.mark, sx.of(p[0]), sy.of(p[1]), s.size || 3.2);
         if (p[2]) dot.append(svg("title", {}, p[2]));
-        if (p[3]) dot.prepend(svg("path", {"stroke-width": 1, d: `M${sx.of(p[0])} ${sy.of(p[3][0])}V${sy.of(p[3][1])}`}));
+        const from = (v) => (sy.of(v) - sy.of(p[1])).toFixed(1);
+        if (p[3]) dot.prepend(svg("path", {class: "interval", "stroke-width": 1, d: `M0 ${from(p[3][0])}V${from(p[3][1])}`}));
         group.append(dot);
       }
     }

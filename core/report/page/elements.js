@@ -27,6 +27,7 @@ const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 function fixed(value, digits, unit = "") {
   return isNumber(value) ? value.toFixed(digits) + unit : "–";
 }
+const counted = (value, thing) => `${whole(value)} ${thing}${value === 1 ? "" : "s"}`;
 const whole = (value) => isNumber(value) ? Math.round(value).toLocaleString("en") : "–";
 function seconds(value) {
   if (!isNumber(value)) return "–";
@@ -36,8 +37,8 @@ function seconds(value) {
 function table(caption, columns, rows) {
   const head = html("tr", {}, columns.map((c) => html("th", {scope: "col", class: c.name ? "name" : null}, c.title)));
   const body = rows.map((row) => html("tr", {}, row.map((cell, k) =>
-    html("td", {class: columns[k].why ? "why" : columns[k].name ? "name" : null}, cell ?? "–"))));
-  return html("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": caption},
+    html("td", {class: columns[k].why ? "why" : columns[k].name ? "name" : null, "data-title": columns[k].title}, cell ?? "–"))));
+  return html("div", {class: columns.length > 4 ? "scroll wide" : "scroll", tabindex: "0", role: "region", "aria-label": caption},
     html("table", {}, html("caption", {}, caption), html("thead", {}, head), html("tbody", {}, body)));
 }
 

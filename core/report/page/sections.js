@@ -2,9 +2,9 @@
 
 function header() {
   const facts = [["Status", run.status + (run.how ? ` (${run.how})` : "")], ["Start", run.start_utc], ["Duration", seconds(run.duration_s)],
-    ["Tick", seconds(run.tick_s)], ["Seed", run.seed], ["Wall time", seconds(run.wall_s)], ["Frames", whole(run.frame_count)],
+    ["Tick", seconds(run.tick_s)], ["Seed", run.seed], ["Wall time", seconds(run.wall_s) + (run.parts > 1 ? ` in ${run.parts} parts` : "")], ["Frames", whole(run.frame_count)],
     ["Software", run.software], ["Digest", run.digest]];
-  page.querySelector("h1").textContent = `DMISE run: ${run.sensors.length} sensor${run.sensors.length === 1 ? "" : "s"}`;
+  page.querySelector("h1").textContent = `DMISE run: ${counted(run.sensors.length, "sensor")}`;
   page.append(html("dl", {class: "facts"}, facts.filter(([, value]) => value !== "" && value !== undefined).map(([name, value]) =>
     html("div", {}, html("dt", {}, name), html("dd", {}, String(value))))));
   if (run.status !== "complete")
@@ -24,7 +24,7 @@ function placeText(sensor) {
 function summary() {
   const columns = [{title: "sensor", name: true}, {title: "camera", name: true}, {title: "place", name: true}, {title: "frames"}, {title: "detections"}];
   if (run.has_truth) columns.push({title: "found"}, {title: "missed"}, {title: "too faint"}, {title: "false alarms"}, {title: "Pd"});
-  columns.push({title: "limiting magnitude"}, {title: "s per frame"}, {title: "memory, MB"}, {title: "log", name: true});
+  columns.push({title: "limiting magnitude V"}, {title: "s per frame"}, {title: "memory, MB"}, {title: "log", name: true});
   section("summary", "Summary", table("Sensors; Pd is the share of objects expected above SNR 6 that were found", columns, run.sensors.map((s, k) => {
     const row = [html("a", {href: `#sensor-${k}`}, s.name), s.camera || "–", placeText(s), whole(s.frames), whole(s.detections)];
     if (run.has_truth) row.push(whole(s.fates?.found), whole(s.fates?.missed), whole(s.fates?.faint), whole(s.false_alarms), fixed(s.pd, 3));
@@ -39,7 +39,7 @@ function frames() {
   if (run.every > 1) parts.push(html("p", {class: "dim"}, `Every ${run.every}th frame is in this page; the directories of the sensors have all.`));
   if (run.source_every > 1) parts.push(html("p", {class: "dim"}, `Truth and detections of every ${run.source_every}th of these are marked; the files have all.`));
   run.sensors.forEach((s, k) => parts.push(html("h3", {id: `sensor-${k}`}, s.name), framesOf[k].length
-    ? html("div", {}, html("p", {class: "dim"}, `${whole(s.frames)} frames in `, link(s.name + "/", s.name + "/")), thumbnails(k))
+    ? html("div", {}, html("p", {class: "dim"}, `${counted(s.frames, "frame")} in `, link(s.name + "/", s.name + "/")), thumbnails(k))
     : html("p", {class: "dim"}, "no frames")));
   section("frames", "Frames", ...parts);
 }
@@ -168,10 +168,10 @@ function detection() {
       return [at, b.found / b.truths, `${b.found} of ${b.truths}`, [b.low, b.high], b.theory];
     }).filter((p) => isNumber(p[0]) && (!log || p[0] > 0));
     const snr = bins(score.by_snr, true), magnitude = bins(score.by_magnitude, false);
-    if (snr.length) parts.push(chart({title: `Probability of detection, ${of}`, note: "with 95 % intervals; the line is of an ideal detector with the threshold 6",
+    if (snr.length > 1) parts.push(chart({title: `Probability of detection, ${of}`, note: "with 95 % intervals; the line is of an ideal detector with the threshold 6",
       x: {label: "expected SNR", log: true}, y: {label: "Pd", least: 0, most: 1}, height: 250,
       series: [{label: "theory", colour: "c6", dash: "5 4", lines: [snr.map((p) => [p[0], p[4]])]}, {label: "found", colour: "c0", mark: "circle", line: false, lines: [snr]}]}));
-    if (magnitude.length && score.sensor === "") parts.push(chart({title: `Probability of detection, ${of}`, note: "with 95 % intervals",
+    if (magnitude.length > 1 && score.sensor === "") parts.push(chart({title: `Probability of detection, ${of}`, note: "with 95 % intervals",
       x: {label: "magnitude V of the object"}, y: {label: "Pd", least: 0, most: 1}, height: 250,
       series: [{label: "found", colour: "c0", mark: "circle", line: false, lines: [magnitude]}]}));
   }
@@ -180,7 +180,7 @@ function detection() {
       .filter((p) => isNumber(p[1]))]})).filter((s) => s.lines[0].length);
   const some = limits.slice(0, 16);
   if (some.length) parts.unshift(chart({title: "Limiting magnitude", note: limits.length > some.length ? `the first ${some.length} of ${limits.length} sensors; the table above has all` :
-    "of a point source at the detector's threshold, as each frame reports it", x: timeAxis(), y: {label: "magnitude", flip: true}, series: some, height: 250}));
+    "of a point at the detector's threshold, 5 times the noise, as each frame measured it", x: timeAxis(), y: {label: "magnitude V", flip: true}, series: some, height: 250}));
   if (parts.length) section("detection", "Detection", html("div", {class: "charts"}, parts.filter((p) => p)));
 }
 
@@ -197,12 +197,12 @@ function tracks() {
     bands: run.cues.filter((c) => marked.has(c.track)).map((c) => [minutes(c.from_s), minutes(c.to_s)])});
   const trackName = (t) => t.name || (t.number ? String(t.number) : `track ${t.id ?? t.track}`);
   const parts = [figure ? html("div", {class: "charts"}, figure) : null];
-  parts.push(table(`${whole(run.track_count)} tracks` + (run.tracks.length < run.track_count ? `, the first ${run.tracks.length}` : ""),
+  parts.push(table(counted(run.track_count, "track") + (run.tracks.length < run.track_count ? `, the first ${run.tracks.length}` : ""),
     [{title: "track"}, {title: "object", name: true}, {title: "status", name: true}, {title: "detections"}, {title: "cues"}, {title: "seen [min]"},
       {title: "altitude [km]"}, {title: "sigma at the end [m]"}],
     run.tracks.map((t) => [String(t.id), t.number ? trackName(t) : "in no catalogue", t.status, whole(t.detections), whole(t.cues),
       `${fixed(minutes(t.first_s), 1)} to ${fixed(minutes(t.last_s), 1)}`, whole(t.altitude_km), whole(t.sigma_m)])));
-  if (run.cue_count) parts.push(html("h3", {}, "Cues"), table(`${whole(run.cue_count)} cues` + (run.cues.length < run.cue_count ? `, the first ${run.cues.length}` : ""),
+  if (run.cue_count) parts.push(html("h3", {}, "Cues"), table(counted(run.cue_count, "cue") + (run.cues.length < run.cue_count ? `, the first ${run.cues.length}` : ""),
     [{title: "sensor", name: true}, {title: "target", name: true}, {title: "from [min]"}, {title: "to [min]"}, {title: "exposures"}, {title: "expected information [nat]"}],
     run.cues.map((c) => [c.sensor, trackName(c), fixed(minutes(c.from_s), 2), fixed(minutes(c.to_s), 2), whole(c.exposures), fixed(c.gain_nats, 2)])));
   section("tracks", "Tracks and cues", ...parts);
@@ -222,8 +222,10 @@ function plan() {
       return b;
     };
     const sum = (key) => rows.reduce((a, p) => a + (p[key] || 0), 0);
+    // A prediction is compared with what it is of: detection and writing have none.
+    const foreseen = rows.filter((p) => p.predicted_s !== null).reduce((a, p) => a + p.measured_s, 0);
     const details = html("details", {open: few && k === 0}, html("summary", {}, `${s.name}: ${seconds(sum("measured_s"))} a frame` +
-      (sum("predicted_s") ? `, predicted ${seconds(sum("predicted_s"))}` : "")));
+      (foreseen ? `; effects with a prediction take ${seconds(foreseen)} of it, predicted ${seconds(sum("predicted_s"))}` : "")));
     const fill = () => {
       if (details.dataset.filled) return;
       details.dataset.filled = "yes";
@@ -243,12 +245,9 @@ function clock() {
   if (!run.ticks.length && !run.nodes.length) return;
   const parts = [];
   if (run.ticks.length) {
-    const waits = new Map();
-    run.ticks.forEach((t, k) => {
-      const before = k ? run.ticks[k - 1][2] : t[1], entry = waits.get(t[3]) || {ticks: 0, seconds: 0};
-      waits.set(t[3], {ticks: entry.ticks + 1, seconds: entry.seconds + Math.max(0, t[2] - Math.max(before, t[1]))});
-    });
-    const held = [...waits.entries()].sort((a, b) => b[1].seconds - a[1].seconds);
+    const ended = new Map();
+    for (const t of run.ticks) ended.set(t[3], (ended.get(t[3]) || 0) + 1);
+    const held = [...ended.entries()].sort((a, b) => b[1] - a[1]), waits = [...run.waited_for].sort((a, b) => b[1] - a[1]);
     const top = held.slice(0, 6).map(([name]) => name);
     const series = [{label: "granted", colour: "c6", thin: true, dash: "3 3", lines: [run.ticks.map((t) => [t[1], t[0]])]}];
     top.forEach((name, k) => series.push({label: `done, last by ${name || "nobody"}`, colour: `c${k}`, mark: shapes[k], line: false, size: 2.6,
@@ -257,12 +256,13 @@ function clock() {
       lines: [run.ticks.filter((t) => !top.includes(t[3])).map((t) => [t[2], t[0], `tick ${t[0]}: last by ${t[3]}`])]});
     const note = run.ticks.length < run.tick_count ? `the last ${run.ticks.length} of ${run.tick_count} ticks` : "when each tick was granted, when all had done it, and who was last";
     parts.push(html("div", {class: "charts"}, chart({title: "Ticks", note, x: {label: "wall time [s]"}, y: {label: "tick"}, series, height: 320}),
-      html("div", {}, table("Whom the others waited for", [{title: "node", name: true}, {title: "ticks that it ended"}, {title: "waited for [s]"}],
-        held.slice(0, 50).map(([name, w]) => [name || "–", whole(w.ticks), fixed(w.seconds, 2)])))));
+      waits.length ? html("div", {}, table("Whom the clock waited for: who had all input and was not done",
+        [{title: "node", name: true}, {title: "waited for [s]"}, {title: "ticks that it ended"}],
+        waits.slice(0, 50).map(([name, s]) => [name, fixed(s, 2), whole(ended.get(name) || 0)]))) : null));
   }
   if (run.nodes.length) {
     const most = Math.max(...run.nodes.map((n) => n.compute_s + n.messaging_s + n.waiting_s), 1e-9);
-    parts.push(table("Time of each node", [{title: "node", name: true}, {title: "computing [s]"}, {title: "messaging [s]"}, {title: "waiting [s]"},
+    parts.push(table("Time of each node" + (run.parts > 1 ? ", in the last part of the run" : ""), [{title: "node", name: true}, {title: "computing [s]"}, {title: "messaging [s]"}, {title: "waiting [s]"},
       {title: "start [s]"}, {title: "share of computing", name: true}], run.nodes.map((n) => {
       const bar = html("span", {class: "bar"});
       bar.style.width = `${(120 * n.compute_s / most).toFixed(1)}px`;
@@ -290,3 +290,4 @@ clock();
 files();
 nav.append(html("ul", {}, sections.map(([id, title]) => html("li", {}, html("a", {href: `#${id}`}, title)))));
 document.documentElement.dataset.ready = "yes";
+drawUnseen();

@@ -18,6 +18,16 @@ const whenSeen = new IntersectionObserver((entries) => {
     drawThumbnail(entry.target, Number(entry.target.dataset.frame)).catch((problem) => { entry.target.title = problem.message; });
   }
 }, {rootMargin: "300px"});
+/** Draws, one by one, what nobody has scrolled to: pictures are there for a print and a quick thumb. */
+async function drawUnseen() {
+  for (;;) {
+    const canvas = page.querySelector(".thumb canvas[data-frame]:not([data-drawn]):not([title])");
+    if (!canvas) return;
+    whenSeen.unobserve(canvas);
+    await drawThumbnail(canvas, Number(canvas.dataset.frame)).catch((problem) => { canvas.title = problem.message; });
+    await new Promise((go) => setTimeout(go, 20));
+  }
+}
 
 function countsOf(frame) {
   const fates = {};

@@ -1,4 +1,6 @@
 #pragma once
+#include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +15,10 @@ namespace dmise {
 
 /// A process's connection to the time-master: joins, receives grants (published, and repeated in
 /// replies to heartbeats), reports, leaves. Used from one thread.
+///
+/// The master knows the process by this connection. When it breaks, the process proves over the
+/// next one that it is the same, by its token or key, holds its messages until the master has
+/// answered, and repeats those that may be lost.
 class MasterLink {
  public:
   MasterLink(zmq::context_t& context, std::string master, const Event* stop,
@@ -26,9 +32,17 @@ class MasterLink {
   void keep(HeartbeatOptions options, std::optional<zmq::socket_t> resend_socket);
   /// Sent with the next heartbeat.
   void set_computing(bool computing) { heartbeat_->set_computing(computing); }
-  void set_times(const TimeSplit& times) { heartbeat_->set_times(times); }
+  void set_times(const TimeSplit& times) {
+    times_ = times;
+    heartbeat_->set_times(times);
+  }
+  /// Called when the master knows a process again whose connection broke, to repeat messages other
+  /// than `ready` and `done`.
+  void on_return(std::function<void()> repeat) { repeat_ = std::move(repeat); }
 
   void ready();
+  /// It was, and is no longer.
+  void not_ready() { ready_ = false; }
   void done(const TickTally& tally);
   void leave(bool interrupted, const TimeSplit& times);
   void failed(const std::string& reason);
@@ -61,6 +75,11 @@ class MasterLink {
  private:
   void handle_control();
   void handle_ticks();
+  void post(v1::NodeMessage message);
+  void notice_breaks();
+  void prove();
+  void go_on();
+  void await_return();
   void take(const v1::Grant& grant);
 
   zmq::context_t& context_;
@@ -69,10 +88,12 @@ class MasterLink {
   const Event* stop_;
   std::string name_;
   zmq::socket_t control_;
+  zmq::socket_t breaks_;  // of `control_`
   zmq::socket_t ticks_;
   std::unique_ptr<HeartbeatThread> heartbeat_;
   std::vector<zmq::pollitem_t> items_;
 
+  v1::Join request_;
   v1::Welcome welcome_;
   std::optional<v1::MasterMessage> answer_;  // to Join
   std::vector<v1::MasterMessage> answers_;   // to Join of others
@@ -86,6 +107,13 @@ class MasterLink {
   std::string cause_;
   bool deserted_ = false;
   bool receives_ticks_ = false;
+  TimeSplit times_;
+  bool connected_ = false;
+  bool ready_ = false;
+  std::deque<TickTally> done_;         // ticks that the master may not have heard of
+  std::vector<v1::NodeMessage> held_;  // until it knows this process again
+  std::optional<Instant> prove_at_;    // not yet known again: when to try next
+  std::function<void()> repeat_;
 };
 
 }  // namespace dmise

@@ -27,9 +27,9 @@ using std::chrono::nanoseconds;
 constexpr milliseconds probe_interval{10};  // at first; twice as long each time
 // So that the probes of hundreds of nodes leave time to start.
 constexpr milliseconds longest_probe_interval{320};
-constexpr milliseconds idle{1000};
-constexpr milliseconds last_answers{1000};  // longest pause of a reader before its last request
-constexpr milliseconds look_interval{100};  // between checks of connection limits
+constexpr milliseconds node_idle{1000};
+constexpr milliseconds last_answers{1000};    // longest pause of a reader before its last request
+constexpr milliseconds limits_interval{100};  // between checks of connection limits
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
 
@@ -145,7 +145,7 @@ class Node {
   /// Connects to all publishers and waits for the start, or catches up with a run under way. False
   /// if the run is over before.
   bool gather() {
-    while (!link_.topology() && going()) link_.wait({}, idle);
+    while (!link_.topology() && going()) link_.wait({}, node_idle);
     if (!going()) return false;
     const v1::Topology first = *link_.topology();
     resume_tick_ = first.resume_tick();
@@ -166,6 +166,7 @@ class Node {
       }
       link_.wait(inputs_.sockets(), next_probe - now());
       follow_topology();
+      inputs_.update_topics(link_.closed(), {});
       receive_data();
       if (!said_ready && (inputs_.probed() || first.running()) && link_.receives_ticks()) {
         result_->times.start_s = process_age_s();
@@ -223,7 +224,7 @@ class Node {
       update_metrics(false);
     }
     while (!link_.over() && !link_.stopped()) {
-      link_.wait({}, idle);
+      link_.wait({}, node_idle);
       follow_topology();
     }
   }
@@ -238,9 +239,9 @@ class Node {
   }
 
   /// After a restart, or at the end of an earlier run: gives the participant the inputs it needs to
-  /// continue.
+  /// continue. Its first tick may be 0 then: what it repeats for others begins there.
   std::vector<Message> resume_participant() {
-    if (incarnation_ == 1 && from_tick_ == 0) return {};
+    if (incarnation_ == 1 && resume_tick_ == 0) return {};
     std::vector<Message> past;
     if (!consumes_.empty() && first_input() < from_tick_) {
       if (!await(from_tick_ - 1)) return {};
@@ -262,7 +263,7 @@ class Node {
       inputs_.update_topics(link_.closed(), link_.take_published());
       const bool granted = link_.granted() >= tick || tick < resume_tick_;
       if (granted && inputs_.complete(tick)) return true;
-      const nanoseconds patience = granted ? inputs_.ask_for(tick) : nanoseconds(idle);
+      const nanoseconds patience = granted ? inputs_.ask_for(tick) : nanoseconds(node_idle);
       {
         const Stopwatch watch(result_->times.waiting_s);
         link_.wait(inputs_.sockets(), patience);
@@ -279,7 +280,7 @@ class Node {
     if (listeners_ && now() >= next_look_) {
       for (const std::string& closed : listeners_->enforce(now())) spdlog::warn("{}", closed);
       listeners_->forget(listeners_->broken());
-      next_look_ = now() + look_interval;
+      next_look_ = now() + limits_interval;
     }
   }
 

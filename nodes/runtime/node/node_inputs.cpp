@@ -18,7 +18,7 @@ constexpr milliseconds gap_patience{20};            // for messages known to be 
 constexpr milliseconds gap_patience_limit{4000};    // doubled whenever they were only late
 constexpr milliseconds quiet_patience{500};         // for others: their publisher may be slow
 constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
-constexpr milliseconds idle{1000};
+constexpr milliseconds inputs_idle{1000};
 
 }  // namespace
 
@@ -148,7 +148,7 @@ void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publishe
 
 nanoseconds NodeInputs::ask_for(Tick tick) {
   const auto wants = inbox_.wanted(tick);
-  if (wants.empty()) return idle;
+  if (wants.empty()) return inputs_idle;
   const bool gap = std::any_of(wants.begin(), wants.end(), [](const auto& w) { return w.gap; });
   const Missing missing = gap ? Missing::gap : Missing::quiet;
   // Patience starts when a gap is known. 0: request without delay.

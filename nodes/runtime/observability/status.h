@@ -4,11 +4,14 @@
 
 #include "core/base/sim_time.h"
 #include "core/sim/run_phase.h"
-#include "dmise/v1/time.pb.h"
 #include "nodes/runtime/protocol/time_split.h"
 #include "nodes/runtime/security/security.h"
 
 namespace dmise {
+
+namespace v1 {
+class Endpoints;
+}
 
 struct NodeStatus {
   std::string name;

@@ -10,13 +10,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Event {
+struct LoggedEvent {
   std::string_view name;
   std::initializer_list<LogField> fields;
 };
 
 // The event being logged by this thread; without a queue it is formatted before `log` returns.
-thread_local const Event* current_event = nullptr;
+thread_local const LoggedEvent* current_event = nullptr;
 
 std::string rfc3339(spdlog::log_clock::time_point time) {
   const auto us = std::chrono::floor<std::chrono::microseconds>(time.time_since_epoch());
@@ -52,7 +52,7 @@ class JsonFormatter : public spdlog::formatter {
 
 void log_event(spdlog::level::level_enum level, std::string_view event,
                std::initializer_list<LogField> fields, const std::string& text) {
-  const Event now{event, fields};
+  const LoggedEvent now{event, fields};
   current_event = &now;
   spdlog::log(level, "{}", text);
   current_event = nullptr;

@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/base/printable.h"
 #include "nodes/runtime/process/json_log.h"
 
@@ -42,10 +43,13 @@ void start_log(const std::string& name, const std::string& level, const std::str
   logger->set_formatter(format == "json" ? json_formatter() : text_formatter());
   spdlog::set_default_logger(logger);  // first, so that errors below are logged
   if (format != "json" && format != "text")
-    throw ConfigError("log-format: must be text or json, got " + format);
+    throw ConfigError("log-format: must be text or json" + did_you_mean(format, {"text", "json"}) +
+                      ", got " + format);
   const auto parsed = spdlog::level::from_str(level);
   if (parsed == spdlog::level::off && level != "off")
-    throw ConfigError("log-level: must be trace, debug, info, warning, error or off, got " + level);
+    throw ConfigError("log-level: must be trace, debug, info, warning, error or off" +
+                      did_you_mean(level, {"trace", "debug", "info", "warning", "error", "off"}) +
+                      ", got " + level);
   spdlog::set_level(parsed);
 }
 

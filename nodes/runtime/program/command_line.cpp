@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/nearest_name.h"
+#include "core/base/printable.h"
 #include "nodes/runtime/process/host_port.h"
 
 namespace dmise {
@@ -96,6 +97,17 @@ std::string address_error(const std::string& address) {
 
 CLI::Validator transport_address() {
   return {[](std::string& address) { return address_error(address); }, "", "address"};
+}
+
+CLI::Validator one_of(std::vector<std::string> words) {
+  std::string described;
+  for (const std::string& word : words) described += (described.empty() ? "" : "|") + word;
+  return {[words](std::string& text) -> std::string {
+            if (std::ranges::find(words, text) != words.end()) return "";
+            return "must be one of " + joined(words, ", ") + did_you_mean(text, words) + ", got " +
+                   text;
+          },
+          described, "word"};
 }
 
 CLI::Validator number_between(double low, double high) {

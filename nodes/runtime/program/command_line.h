@@ -1,6 +1,7 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace dmise {
 
@@ -10,6 +11,9 @@ std::string address_error(const std::string& address);
 
 /// Restricts an option to such addresses.
 CLI::Validator transport_address();
+
+/// Restricts an option to these words, with a suggestion for one that is misspelt.
+CLI::Validator one_of(std::vector<std::string> words);
 
 /// Restricts an option to numbers from `low` to `high`; unlike CLI::Range it refuses NaN.
 CLI::Validator number_between(double low, double high);

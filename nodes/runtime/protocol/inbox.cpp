@@ -228,7 +228,8 @@ void Inbox::close(const std::string& name, Tick from_tick) {
 }
 
 bool Inbox::probed() const {
-  return std::all_of(topics_.begin(), topics_.end(), [](const Topic& t) { return t.probed; });
+  return std::all_of(topics_.begin(), topics_.end(),
+                     [](const Topic& t) { return t.probed || t.closed_from != INT64_MAX; });
 }
 
 bool Inbox::complete(Tick tick) const {

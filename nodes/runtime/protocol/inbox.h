@@ -58,7 +58,7 @@ class Inbox {
   /// Nothing is published on `topic` from this tick on.
   void close(const std::string& topic, Tick from_tick);
 
-  /// Whether a probe or later message was received on every topic.
+  /// Whether a probe or later message was received on every topic that is not closed.
   bool probed() const;
   /// Whether every topic is complete for `tick`.
   bool complete(Tick tick) const;

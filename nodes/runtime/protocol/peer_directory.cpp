@@ -5,6 +5,10 @@
 namespace dmise {
 namespace {
 
+/// Of one process: its heartbeats come over another connection than that which stands for it, and
+/// either may have been replaced.
+constexpr std::size_t most_proved = 4;
+
 void fill(v1::Publisher* publisher, const Peer& peer) {
   publisher->set_name(peer.join.name());
   publisher->set_incarnation(peer.incarnation);
@@ -25,7 +29,7 @@ void PeerDirectory::add(std::string_view routing_id, std::uint64_t incarnation,
   if (const auto earlier = peers_.find(join.name()); earlier != peers_.end())
     names_.erase(earlier->second.routing_id);
   names_[std::string(routing_id)] = join.name();
-  peers_[join.name()] = {std::string(routing_id), incarnation, join, heartbeat_token};
+  peers_[join.name()] = {std::string(routing_id), incarnation, join, heartbeat_token, {}};
 }
 
 void PeerDirectory::remove(const std::string& name) {
@@ -39,8 +43,32 @@ void PeerDirectory::remove(const std::string& name) {
 }
 
 void PeerDirectory::add_behind(std::string_view agent, std::uint64_t incarnation,
-                               const v1::Join& join) {
-  peers_[join.name()] = {std::string(agent), incarnation, join};
+                               const v1::Join& join, std::uint64_t heartbeat_token) {
+  peers_[join.name()] = {std::string(agent), incarnation, join, heartbeat_token, {}};
+}
+
+void PeerDirectory::prove(const std::string& name, std::string_view routing_id) {
+  const auto found = peers_.find(name);
+  if (found == peers_.end() || found->second.routing_id == routing_id) return;
+  auto& proved = found->second.proved;
+  if (std::ranges::find(proved, routing_id) != proved.end()) return;
+  proved.emplace_back(routing_id);
+  if (proved.size() > most_proved) proved.pop_front();
+}
+
+std::string PeerDirectory::adopt(std::string_view routing_id) {
+  const auto found = std::ranges::find_if(peers_, [&](const auto& entry) {
+    const auto& proved = entry.second.proved;
+    return std::ranges::find(proved, routing_id) != proved.end();
+  });
+  if (found == peers_.end()) return "";
+  const std::string& name = found->first;
+  std::erase(found->second.proved, routing_id);
+  names_.erase(found->second.routing_id);
+  names_[std::string(routing_id)] = name;
+  for (auto& [other, peer] : peers_)
+    if (other == name || peer.join.host() == name) peer.routing_id = routing_id;
+  return name;
 }
 
 std::set<std::string, std::less<>> PeerDirectory::consumed() const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <deque>
 #include <map>
 #include <set>
 #include <string>
@@ -15,6 +16,8 @@ struct Peer {
   std::uint64_t incarnation = 1;
   v1::Join join;  // its Join message
   std::uint64_t heartbeat_token = 0;
+  std::deque<std::string> proved;  // routing ids of the last connections over which it has proved
+                                   // to be itself
 };
 
 /// The processes of a run with their connections and addresses.
@@ -24,7 +27,14 @@ class PeerDirectory {
   void add(std::string_view routing_id, std::uint64_t incarnation, const v1::Join& join,
            std::uint64_t heartbeat_token);
   /// The same for a node of a host, which shares the connection of its agent.
-  void add_behind(std::string_view agent, std::uint64_t incarnation, const v1::Join& join);
+  void add_behind(std::string_view agent, std::uint64_t incarnation, const v1::Join& join,
+                  std::uint64_t heartbeat_token);
+
+  /// Notes a connection over which the process has said its token, or whose key is its own.
+  void prove(const std::string& name, std::string_view routing_id);
+  /// From now on a proved connection stands for its process, and for those behind it, instead of
+  /// the one that broke. Returns the name; "" if it is not proved.
+  std::string adopt(std::string_view routing_id);
 
   /// Removes a process that has left; its name is free then.
   void remove(const std::string& name);

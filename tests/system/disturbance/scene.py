@@ -10,7 +10,7 @@ EVERYBODY = (*NODES, "broker")
 
 SCENARIO = """\
 simulation: {{start: 2018-01-21T00:15:00Z, duration_s: {duration_s}, tick_s: {tick_s}, seed: 1}}
-objects: [{{catalogue: gpredict}}]
+objects: [{{catalogue: demo}}]
 stars: {{catalogue: kstars}}
 sensors:
   - {{name: alpha, site: atlanta, camera: remembering.yaml, pointing: zenith, exposure_s: 1, cadence_s: 4,

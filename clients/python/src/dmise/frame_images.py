@@ -26,6 +26,7 @@ from .message import Message
 from .records import FrameReport
 from .runs import open_run
 from .subscription import ASK_AT_START_EVERY_S, ASK_EVERY_S, SETTLED, Subscription, subscribe
+from .topics import did_you_mean
 
 log = logging.getLogger("dmise")
 WRITTEN_WITHIN_S = 30.0
@@ -131,8 +132,10 @@ class Frames:
         while self._run.phase not in (protocol.PHASE_CONNECTING, *SETTLED) and not self._closing.is_set():
             self._hear()
         if not self._readers and self._directory is None:
+            served = [publisher.name for publisher in self._run.publishers if publisher.frames_endpoint]
+            meant = did_you_mean(self._sensors[0], served) if self._sensors else ""
             raise ValueError(f"{self._master.address}: no sensor{' named ' if self._sensors else ''}"
-                             f"{' or '.join(self._sensors)} serves frames there; directory= names that of the run")
+                             f"{' or '.join(self._sensors)} serves frames there{meant}; directory= names that of the run")
         return bool(self._readers) or self._closing.is_set()
 
     def _of_reports(self) -> Iterator[Frame]:

@@ -20,7 +20,7 @@ from .errors import NoAnswer, RunFailed
 from .master import OVER, Master, make_socket
 from .message import Message
 from .sequences import Gap, Sequences
-from .topics import is_wanted
+from .topics import check_published, is_wanted
 from .world import ObjectRoster
 
 log = logging.getLogger("dmise")
@@ -41,7 +41,8 @@ def subscribe(address: str, *topics: str, keys: str | pathlib.Path | None = None
     raise_on_failure  whether RunFailed is raised when the run has failed; it ends the iteration otherwise
     answer_within_s   the longest time until the time-master's first answer [s]
 
-    Raises NoAnswer without a time-master, ValueError for an address or key that is none.
+    Raises NoAnswer without a time-master, ValueError for an address or key that is none, and when the run has begun for a
+    topic that nobody publishes.
     """
     return Subscription(address, topics, keys_.Keys(keys, name) if keys else None, raise_on_failure, answer_within_s)
 
@@ -65,6 +66,7 @@ class Subscription:
         self.over = False
         self.roster: ObjectRoster | None = None
         self._keys, self._raise_on_failure = keys, raise_on_failure
+        self._topics_are_known = False
         self._closing = threading.Event()
         self._context = zmq.Context()
         self._ready: collections.deque[Message] = collections.deque()
@@ -178,6 +180,8 @@ class Subscription:
             self._observed = endpoints.observe_endpoint
             self._subscriber(keys_.BROKER, self._observed, list(self.topics))
         self._complete.expect(endpoints.publishers)
+        if endpoints.phase == protocol.PHASE_RUNNING and not self._topics_are_known:
+            self._check_topics(endpoints.publishers)
         for publisher in endpoints.publishers:
             direct = [topic for topic in publisher.direct_topics if self._wanted(topic)]
             if direct and publisher.direct_endpoint not in self._sockets:
@@ -187,6 +191,15 @@ class Subscription:
             self._fetch_late(settled_tick)
         if endpoints.phase in OVER and not self._over_at:
             self._over_at = time.monotonic()
+
+    def _check_topics(self, publishers: Any) -> None:
+        """Nothing would ever come on a topic that is misspelt: who publishes what is fixed once the run has begun."""
+        self._topics_are_known = True
+        try:
+            check_published(self.topics, (topic for p in publishers for topic in [*p.topics, *p.direct_topics]))
+        except ValueError:
+            self._release()
+            raise
 
     def _late(self, tick: int) -> list[str]:
         """Topics that have come, and on which something that was said at a tick or before has not."""

@@ -1,0 +1,43 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/base/sim_time.h"
+#include "core/config/section.h"
+
+namespace dmise {
+
+class YamlValue;
+class JsonWriter;
+
+/// A program of the user's that is a node of the run: `{name: gnc, run: [python3, gnc.py]}`.
+struct OwnNode {
+  std::string name;
+  std::string where;             // `file:line:column: nodes[0]`, for messages
+  std::vector<std::string> run;  // program and arguments; empty: somebody joins it
+  std::string run_where;         // `file:line:column: nodes[0].run`
+  std::string directory;         // in which it runs: that of the scenario
+  Tick period_ticks = 1;         // between those that it is asked for
+  std::string options_json = "{}";
+};
+
+/// The keys of a node, for lists of them.
+Forms own_nodes_forms();
+/// Reads `nodes:`. Throws `ConfigError` `file:line:column: key: reason`.
+std::vector<OwnNode> read_own_nodes(const YamlValue& value);
+
+/// Writes the part that determines the products, without the content of files.
+void write_own_nodes(JsonWriter& json, const std::vector<OwnNode>& nodes);
+/// The program and those of its arguments that are files.
+std::vector<std::string> files_of(const std::vector<OwnNode>& nodes);
+/// Path of the program, found as a shell in the node's directory would. Empty if there is none.
+std::string program_of(const OwnNode& node);
+
+/// "python3 gnc.py", for messages.
+std::string command_text(const OwnNode& node);
+/// Throws `ConfigError` that lists the programs that these nodes would start, if there are any.
+void refuse_programs(const std::vector<OwnNode>& nodes);
+/// Throws `ConfigError` if there are nodes; `who` can't have any: "dmise tradeoff".
+void refuse_own_nodes(const std::vector<OwnNode>& nodes, const std::string& who);
+
+}  // namespace dmise

@@ -1,0 +1,12 @@
+#include "launch/make_fusion.h"
+
+#include "nodes/fusion/fusion_evaluator.h"
+
+namespace dmise {
+
+std::unique_ptr<Participant> make_fusion(const Scenario& scenario, const Clock& clock,
+                                         const std::string& directory) {
+  return std::make_unique<FusionEvaluator>(scenario, clock, directory);
+}
+
+}  // namespace dmise

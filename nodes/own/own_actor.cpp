@@ -1,0 +1,191 @@
+#include "nodes/own/own_actor.h"
+
+#include <algorithm>
+
+#include "core/base/formatted.h"
+#include "core/orbit/interpolation_error.h"
+#include "nodes/environment/environment_actor.h"
+#include "nodes/own/joined_states.h"
+
+namespace dmise {
+namespace {
+
+constexpr Tick checkpoint_every = 64;      // calls
+constexpr std::size_t calls_held = 3;      // for joining two, and for the error between three
+constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
+
+bool is_turned_by(const OwnNode& node, const OwnObject& object) {
+  const NodeAttitude* attitude = attitude_by_node(object);
+  return attitude && attitude->node == node.name;
+}
+
+bool is_moved_by(const OwnNode& node, const OwnObject& object) {
+  const NodeMotion* motion = motion_by_node(object);
+  return motion && motion->node == node.name;
+}
+
+std::string list_text(std::span<const std::uint32_t> numbers) {
+  std::string text;
+  for (const std::uint32_t number : numbers.first(std::min<std::size_t>(numbers.size(), 8)))
+    text += (text.empty() ? "" : " ") + std::to_string(number);
+  return text.empty() ? "none" : numbers.size() > 8 ? text + " .." : text;
+}
+
+}  // namespace
+
+OwnActor::OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock,
+                   OwnActorSettings settings)
+    : scenario_(scenario), node_(node), clock_(std::move(clock)), settings_(std::move(settings)) {
+  for (const OwnObject& object : scenario.own_objects) {
+    const bool turned = is_turned_by(node, object);
+    if (!turned && !is_moved_by(node, object)) continue;
+    if (turned) turned_.push_back(std::uint32_t(objects_.size()));
+    objects_.push_back(&object);
+  }
+  warned_.resize(objects_.size());
+}
+
+std::vector<std::string> OwnActor::produces() const { return {actor_prefix + node_.name}; }
+
+std::vector<Message> OwnActor::step(Tick tick, std::span<const Message>) {
+  const Tick call = tick / node_.period_ticks;
+  const bool between = tick % node_.period_ticks != 0;
+  if (!ask_up_to(between ? call + 1 : call)) return {};
+  ObjectStates states =
+      between ? joined_states(states_of(call), states_of(call + 1), tick, scenario_.time_of(tick))
+              : states_of(call);
+  ++steps_;
+  if (tick == scenario_.last_tick()) program_.reset();
+  return {{actor_prefix + node_.name, tick, std::make_shared<State>(std::move(states))}};
+}
+
+const ObjectStates& OwnActor::states_of(Tick call) const {
+  return *std::ranges::find(held_, tick_of(call), &ObjectStates::tick);
+}
+
+bool OwnActor::ask_up_to(Tick call) {
+  const auto is_held = [&] { return !held_.empty() && held_.back().tick >= tick_of(call); };
+  while (!is_held()) {
+    try {
+      if (!ask()) return false;
+    } catch (const ProgramLost& lost) {
+      restart(lost);
+    } catch (const Error& error) {
+      throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(next_call_)) + ": " +
+                  error.what());
+    }
+    ++steps_;
+  }
+  return true;
+}
+
+bool OwnActor::ask() {
+  if (!program_) start();
+  const Tick tick = tick_of(next_call_);
+  v1::OwnNodeStep step;
+  step.set_tick(tick);
+  step.set_time_ns(scenario_.time_of(tick).ns);
+  step.set_give_checkpoint(next_call_ % checkpoint_every == checkpoint_every - 1);
+  auto stepped = program_->step(step, environment_at(clock_, tick, scenario_.time_of(tick)));
+  if (!stepped) return false;
+  check(stepped->states);
+  require_same(stepped->digest);
+  if (stepped->checkpoint) checkpoint_ = {next_call_, std::move(*stepped->checkpoint)};
+  ++next_call_;
+  if (!held_.empty() && held_.back().tick >= tick) return true;  // said before
+  held_.push_back(std::move(stepped->states));
+  if (held_.size() > calls_held) held_.pop_front();
+  look_at_errors();
+  return true;
+}
+
+v1::OwnNodeBegin OwnActor::begin() const {
+  v1::OwnNodeBegin begin;
+  begin.set_options_json(node_.options_json);
+  begin.set_start_utc(scenario_.start_utc);
+  begin.set_tick_ns(scenario_.tick.ns);
+  begin.set_last_tick(scenario_.last_tick());
+  begin.set_period_ticks(std::uint32_t(node_.period_ticks));
+  begin.set_seed(scenario_.seed);
+  for (const OwnObject* object : objects_) {
+    v1::OwnNodeObject& one = *begin.add_objects();
+    one.set_name(object->name);
+    one.set_catalogue_number(object->catalogue_number);
+    one.set_moved(is_moved_by(node_, *object));
+    one.set_turned(is_turned_by(node_, *object));
+  }
+  if (checkpoint_) begin.set_checkpoint(checkpoint_->bytes);
+  return begin;
+}
+
+void OwnActor::start() {
+  next_call_ = checkpoint_ ? checkpoint_->call + 1 : 0;
+  ProgramSettings settings{.name = node_.name,
+                           .command = node_.run,
+                           .directory = node_.directory,
+                           .log_path = settings_.log_path,
+                           .start_within_s = scenario_.network.join_within_s,
+                           .silent_after_s = scenario_.network.silent_after_s,
+                           .stop = settings_.stop};
+  settings.command[0] = program_of(node_);
+  program_.emplace(settings, begin(), restarts_ > 0);
+}
+
+void OwnActor::restart(const ProgramLost& lost) {
+  program_.reset();
+  const NetworkConfig& network = scenario_.network;
+  const std::string text = "tick " + std::to_string(tick_of(next_call_)) + ": " + lost.what();
+  if (network.on_silent_node != OnSilentNode::restart || restarts_ >= network.restarts)
+    throw Error(settings_.error_prefix + text);
+  ++restarts_;
+  settings_.note(node_.name + ": " + text + ", and was restarted (" + std::to_string(restarts_) +
+                 " of " + std::to_string(network.restarts) + ")");
+}
+
+void OwnActor::check(const ObjectStates& states) const {
+  const Tick tick = tick_of(next_call_);
+  if (states.tick != tick || states.time != scenario_.time_of(tick))
+    throw Error("its states are of tick " + std::to_string(states.tick) + ", " +
+                formatted("%.9g", states.time.seconds()) + " s");
+  if (states.count != objects_.size())
+    throw Error("count: must be " + std::to_string(objects_.size()) +
+                ", one for each object, got " + std::to_string(states.count));
+  for (const std::uint8_t code : states.code)
+    if (code != 0 && code != std::uint8_t(MotionCode::untold))
+      throw Error("code: must be 0 or " + std::to_string(int(MotionCode::untold)) +
+                  " (no state), got " + std::to_string(int(code)));
+  if (states.attitude_object != turned_)
+    throw Error("attitude_object: must be " + list_text(turned_) +
+                ", the objects that it turns, got " + list_text(states.attitude_object));
+}
+
+/// A program that was started again repeats what it said.
+void OwnActor::require_same(std::uint64_t digest) {
+  const auto call = std::size_t(next_call_);
+  if (call == digests_.size()) return digests_.push_back(digest);
+  if (digests_[call] != digest)
+    throw Error(
+        "started again, its program says something else of this tick than before: its "
+        "states must be the same in each run");
+}
+
+/// Warns of objects whose paths between ticks are not what the planner takes them for.
+void OwnActor::look_at_errors() {
+  if (held_.size() < 3) return;
+  const auto stated = stated_interpolation_error(
+      HermiteOrder::cubic, scenario_.tick.seconds() * double(node_.period_ticks));
+  const double most_m = std::max(tolerated_error_m, stated ? stated->worst_m : 0.0);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (warned_[i] || !is_moved_by(node_, *objects_[i])) continue;
+    const double error_m = cubic_error_m({&held_[0], &held_[1], &held_[2]}, i);
+    if (!(error_m > most_m) || error_m > 1e300) continue;
+    warned_[i] = true;
+    settings_.note(
+        node_.name + ": " + objects_[i]->name +
+        formatted(" is off by about %.3g m between ticks, at tick %ld: do its velocities "
+                  "fit its positions, and are ticks short enough?",
+                  error_m, long(held_[1].tick)));
+  }
+}
+
+}  // namespace dmise

@@ -1,0 +1,70 @@
+#pragma once
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/scenario.h"
+#include "core/sim/participant.h"
+#include "core/time/clock.h"
+#include "nodes/own/own_program.h"
+
+namespace dmise {
+
+struct OwnActorSettings {
+  std::string log_path;      // of the program's output; empty: stderr of this process
+  std::string error_prefix;  // of errors; empty where the run names the node
+  std::function<void(const std::string&)> note = [](const std::string&) {};  // hears lines
+  const Event* stop = nullptr;
+};
+
+/// Publishes what a program of the user's says of the objects that it moves or turns. Starts the
+/// program when its first step is due. Under `on_silent_node: restart` a program that dies or is
+/// silent is started again, continues from its last checkpoint, and must say the same.
+class OwnActor : public Actor {
+ public:
+  /// `scenario` must outlive it.
+  OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock, OwnActorSettings settings);
+
+  std::string name() const override { return node_.name; }
+  std::vector<std::string> produces() const override;
+  std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  std::uint64_t progress() const override { return steps_; }
+
+ private:
+  struct Checkpoint {
+    Tick call = 0;
+    std::string bytes;
+  };
+  /// Asks for the states of all calls up to this one that it has not; false after the stop.
+  bool ask_up_to(Tick call);
+  bool ask();
+  void start();
+  void restart(const ProgramLost& lost);
+  void check(const ObjectStates& states) const;
+  void check_attitudes(const ObjectStates& states) const;
+  void require_same(std::uint64_t digest);
+  void look_at_errors();
+  v1::OwnNodeBegin begin() const;
+  const ObjectStates& states_of(Tick call) const;
+  Tick tick_of(Tick call) const { return call * node_.period_ticks; }
+
+  const Scenario& scenario_;
+  OwnNode node_;
+  Clock clock_;
+  OwnActorSettings settings_;
+  std::vector<const OwnObject*> objects_;  // in the scenario's order
+  std::vector<std::uint32_t> turned_;      // of these, by index
+  std::optional<OwnProgram> program_;
+  Tick next_call_ = 0;                  // of the program
+  std::vector<std::uint64_t> digests_;  // of what it said, by call
+  std::optional<Checkpoint> checkpoint_;
+  std::deque<ObjectStates> held_;  // of the last calls
+  int restarts_ = 0;
+  std::vector<bool> warned_;  // of objects that are not interpolated well
+  std::atomic<std::uint64_t> steps_{0};
+};
+
+}  // namespace dmise

@@ -1,0 +1,188 @@
+#include "nodes/own/own_program.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+#include "core/base/printable.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/seconds.h"
+#include "nodes/runtime/process/spawn.h"
+#include "nodes/runtime/transport/socket.h"
+#include "nodes/wire/content_digest.h"
+#include "nodes/wire/state_codec.h"
+
+namespace dmise {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds look_every{20};          // for the end of the process
+constexpr milliseconds last_words_within{200};  // of a process that has ended
+constexpr milliseconds time_to_end{500};
+constexpr double working_within_s = 900.0;  // longest work on one answer
+constexpr double alive_every_share = 0.2;   // of the time after which it is silent
+constexpr double longest_alive_every_s = 1.0;
+
+std::string seconds_text(double seconds) {
+  std::string text = std::to_string(seconds);
+  text.resize(text.find('.') + 2);
+  return text + " s";
+}
+
+std::string end_text(int status) {
+  if (WIFSIGNALED(status))
+    return std::string("its program was killed (") + strsignal(WTERMSIG(status)) + ")";
+  return "its program has ended with code " + std::to_string(WEXITSTATUS(status));
+}
+
+}  // namespace
+
+OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log)
+    : settings_(settings),
+      endpoint_(std::in_place),
+      socket_(make_socket(context_, zmq::socket_type::pair, max_data_bytes)) {
+  bind_to(socket_, endpoint_->address());
+  pid_ = spawn({.name = settings.name,
+                .arguments = settings.command,
+                .log_path = settings.log_path,
+                .keep_log = keep_log,
+                .directory = settings.directory,
+                .environment = {"DMISE_OWN_NODE=" + endpoint_->address()},
+                .own_group = true});
+  begin.set_schema_version(wire_schema_version);
+  begin.set_node(settings.name);
+  begin.set_alive_every_s(
+      std::min(longest_alive_every_s, alive_every_share * settings.silent_after_s));
+  v1::OwnNodeRequest request;
+  *request.mutable_begin() = std::move(begin);
+  try {
+    if (!send(request, settings.start_within_s)) return;
+    const auto got = answer(settings.start_within_s);
+    if (got && !got->head.has_ready()) throw Error("its program does not say that it is ready");
+  } catch (...) {
+    end(SIGKILL);
+    throw;
+  }
+  endpoint_.reset();
+}
+
+OwnProgram::~OwnProgram() {
+  if (pid_ == 0) return;
+  try {
+    v1::OwnNodeRequest request;
+    request.mutable_end();
+    try_to_send(request);
+  } catch (const std::exception&) {  // it is ended anyway
+  }
+  for (const auto until = now() + time_to_end; now() < until;) {
+    if (waitpid(pid_, nullptr, WNOHANG) == pid_) {
+      pid_ = 0;
+      return;
+    }
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  end(SIGKILL);
+}
+
+void OwnProgram::end(int signal) {
+  if (pid_ == 0) return;
+  kill(-pid_, signal);  // with what it has started
+  kill(pid_, signal);
+  while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = 0;
+}
+
+bool OwnProgram::try_to_send(const v1::OwnNodeRequest& request, const std::string& more) {
+  using zmq::send_flags;
+  const auto part = more.empty() ? send_flags::none : send_flags::sndmore;
+  if (!socket_.send(to_frame(request), part | send_flags::dontwait)) return false;
+  if (!more.empty()) socket_.send(zmq::buffer(more), send_flags::none);
+  return true;
+}
+
+bool OwnProgram::send(const v1::OwnNodeRequest& request, double within_s, const std::string& more) {
+  const Instant begun = now();
+  while (!stopped()) {
+    if (try_to_send(request, more)) return true;
+    wait_until(ZMQ_POLLOUT, look_every);
+    require_alive();
+    if (to_seconds(now() - begun) > within_s)
+      throw ProgramLost("its program has not been connected for " + seconds_text(within_s));
+  }
+  return false;
+}
+
+void OwnProgram::wait_until(short ready, std::chrono::milliseconds at_most) {
+  std::vector<zmq::pollitem_t> items{{socket_.handle(), 0, ready, 0}};
+  wait_for(items, at_most);
+}
+
+std::optional<OwnProgram::Answer> OwnProgram::receive() {
+  while (true) {
+    Answer answer{.head = {}, .frames = dmise::receive(socket_)};
+    if (answer.frames.empty()) return std::nullopt;
+    heard_ = now();
+    if (!from_frame(answer.frames[0], &answer.head) ||
+        answer.head.body_case() == v1::OwnNodeAnswer::BODY_NOT_SET)
+      throw Error("what its program says is no answer (" + std::to_string(answer.frames[0].size()) +
+                  " bytes)");
+    if (answer.head.has_failed()) throw Error(printable(answer.head.failed()));
+    if (!answer.head.has_alive()) return answer;
+  }
+}
+
+void OwnProgram::require_alive() {
+  int status = 0;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return;
+  pid_ = 0;
+  wait_until(ZMQ_POLLIN, last_words_within);
+  receive();  // throws if it said why
+  if (WIFSIGNALED(status)) throw ProgramLost(end_text(status));
+  throw Error(end_text(status) + (endpoint_ ? " before it was ready" : ""));
+}
+
+std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
+  const Instant asked = heard_ = now();
+  for (Instant awake = asked; !stopped(); awake = now()) {
+    wait_until(ZMQ_POLLIN, look_every);
+    if (auto got = receive()) return got;
+    require_alive();
+    // While this process was suspended it could not hear anything.
+    if (to_seconds(now() - awake) > 0.5 * settings_.silent_after_s) heard_ = now();
+    const double silent_s = to_seconds(now() - heard_);
+    if (silent_s > (endpoint_ ? within_s : settings_.silent_after_s))
+      throw ProgramLost("its program has not answered for " + seconds_text(silent_s));
+    if (to_seconds(now() - asked) > within_s)
+      throw ProgramLost("its program works on one answer for longer than " +
+                        seconds_text(within_s));
+  }
+  return std::nullopt;
+}
+
+std::optional<OwnProgram::Stepped> OwnProgram::step(const v1::OwnNodeStep& step,
+                                                    const EnvironmentState& environment) {
+  v1::OwnNodeRequest request;
+  *request.mutable_step() = step;
+  if (!send(request, settings_.silent_after_s, encode(environment).payload)) return std::nullopt;
+  auto got = answer(working_within_s);
+  if (!got) return std::nullopt;
+  if (!got->head.has_stepped()) throw Error("its program answers a step by something else");
+  if (got->frames.size() != 3)
+    throw Error("its program answers in " + std::to_string(got->frames.size()) +
+                " frames instead of 3");
+  const auto frames = views(got->frames);
+  Stepped stepped;
+  stepped.states = std::get<ObjectStates>(decode(MessageKind::object_states, frames[1], frames[2]));
+  stepped.digest = content_digest(MessageKind::object_states, frames[1], frames[2]);
+  if (got->head.stepped().has_checkpoint())
+    stepped.checkpoint = std::move(*got->head.mutable_stepped()->mutable_checkpoint());
+  return stepped;
+}
+
+}  // namespace dmise

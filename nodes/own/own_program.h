@@ -1,0 +1,82 @@
+#pragma once
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+#include <zmq.hpp>
+
+#include "core/base/error.h"
+#include "core/base/instant.h"
+#include "core/sim/state.h"
+#include "dmise/v1/own_node.pb.h"
+#include "nodes/own/private_endpoint.h"
+#include "nodes/runtime/process/event.h"
+
+namespace dmise {
+
+/// The program has died or is silent: another process may take its place.
+class ProgramLost : public Error {
+ public:
+  using Error::Error;
+};
+
+/// How a program is started and how long it may be silent.
+struct ProgramSettings {
+  std::string name;                  // of the node
+  std::vector<std::string> command;  // the first is the program's path
+  std::string directory;             // in which it runs
+  std::string log_path;              // of its output; empty: stderr of this process
+  double start_within_s = 30.0;
+  double silent_after_s = 5.0;
+  const Event* stop = nullptr;  // ends the wait for an answer
+};
+
+/// A program of the user's as a child process, and what is said with it (docs/wire.md, Own nodes).
+/// All functions throw `ProgramLost`, and `Error` for an answer that is not one or says that the
+/// program failed.
+class OwnProgram {
+ public:
+  /// Starts the program, and tells it to begin.
+  OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log);
+  /// Ends it.
+  ~OwnProgram();
+  OwnProgram(const OwnProgram&) = delete;
+  OwnProgram& operator=(const OwnProgram&) = delete;
+
+  struct Stepped {
+    ObjectStates states;
+    std::uint64_t digest = 0;  // of the states as they came
+    std::optional<std::string> checkpoint;
+  };
+  /// What it says of a tick; nothing after the stop.
+  std::optional<Stepped> step(const v1::OwnNodeStep& step, const EnvironmentState& environment);
+
+ private:
+  struct Answer {
+    v1::OwnNodeAnswer head;
+    std::vector<zmq::message_t> frames;
+  };
+  /// False while nobody is connected.
+  bool try_to_send(const v1::OwnNodeRequest& request, const std::string& more = {});
+  /// Waits until the program is connected; false after the stop.
+  bool send(const v1::OwnNodeRequest& request, double within_s, const std::string& more = {});
+  /// Waits for an answer; nothing after the stop.
+  std::optional<Answer> answer(double within_s);
+  void wait_until(short ready, std::chrono::milliseconds at_most);
+  /// What came, if it is not a sign of life.
+  std::optional<Answer> receive();
+  bool stopped() const { return settings_.stop && settings_.stop->is_set(); }
+  void require_alive();
+  void end(int signal);
+
+  ProgramSettings settings_;
+  std::optional<PrivateEndpoint> endpoint_;  // until the program has connected
+  zmq::context_t context_{1};
+  zmq::socket_t socket_;
+  pid_t pid_ = 0;     // 0: it has ended
+  Instant heard_{0};  // when it last gave a sign of life
+};
+
+}  // namespace dmise

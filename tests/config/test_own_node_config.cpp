@@ -1,0 +1,140 @@
+#include "core/config/own_node_config.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/config/scenario.h"
+#include "core/config/schema.h"
+#include "core/config/yaml_reader.h"
+#include "tests/support/config_error.h"
+
+namespace dmise {
+namespace {
+
+using test::config_error_of;
+using testing::HasSubstr;
+
+std::vector<OwnNode> read(const std::string& text) {
+  return read_own_nodes(
+      YamlMap(YamlValue::parse("nodes: " + text, "s.yaml"), scenario_section()).require("nodes"));
+}
+std::string complaint(const std::string& text) {
+  return config_error_of([&] { read(text); });
+}
+
+TEST(OwnNodeConfig, ANodeIsItsProgramAndWhatThatIsTold) {
+  const OwnNode node =
+      read(
+          "[{name: gnc, run: [sh, -c, exit], period_ticks: 3, options: {gain: 0.3, deep: [1, x], "
+          "loud: on, quoted: \"1\"}}]")
+          .at(0);
+  EXPECT_EQ(node.name, "gnc");
+  EXPECT_THAT(node.run, testing::ElementsAre("sh", "-c", "exit"));
+  EXPECT_EQ(node.period_ticks, 3);
+  EXPECT_EQ(node.options_json, R"({"gain":0.3,"deep":[1,"x"],"loud":true,"quoted":"1"})");
+  EXPECT_EQ(command_text(node), "sh -c exit");
+  const OwnNode other = read("[{name: other, elsewhere: on}]").at(0);
+  EXPECT_TRUE(other.run.empty());
+  EXPECT_EQ(other.options_json, "{}");
+}
+
+TEST(OwnNodeConfig, WhatIsWrongIsToldWithItsPlace) {
+  EXPECT_THAT(complaint("[{name: gnc}]"), HasSubstr("s.yaml:1:9: nodes[0]: give either run or"));
+  EXPECT_THAT(complaint("[{name: gnc, run: [sh], elsewhere: on}]"), HasSubstr("give either run"));
+  EXPECT_THAT(complaint("[{name: gnc, run: []}]"), HasSubstr("nodes[0].run: needs a program"));
+  EXPECT_THAT(complaint("[{name: gnc, run: [no-such-program]}]"),
+              HasSubstr("nodes[0].run[0]: there is no such program, got no-such-program"));
+  EXPECT_THAT(complaint("[{name: gnc, run: [./s.yaml]}]"), HasSubstr("there is no such program"));
+  EXPECT_THAT(complaint("[{name: gnc, run: [sh], period_ticks: 0}]"),
+              HasSubstr("nodes[0].period_ticks: must be >= 1, got 0"));
+  EXPECT_THAT(complaint("[{name: gnc, run: [sh], options: {a: {b: 1}}}]"),
+              HasSubstr("nodes[0].options.a: must be a number, a flag, a text"));
+  EXPECT_THAT(complaint("[{name: gnc, ran: [sh]}]"), HasSubstr("did you mean run?"));
+}
+
+TEST(OwnNodeConfig, ProgramsNeedLeave) {
+  EXPECT_EQ(config_error_of([] { refuse_programs(read("[{name: a, elsewhere: on}]")); }),
+            "no error");
+  EXPECT_THAT(config_error_of([] {
+                refuse_programs(read("[{name: a, elsewhere: on}, {name: b, run: [sh, x.sh]}]"));
+              }),
+              testing::AllOf(HasSubstr("nodes[1].run: the scenario starts `sh x.sh`"),
+                             HasSubstr("--allow-programs")));
+}
+
+// The digest of a run covers the program and those of its arguments that are files.
+TEST(OwnNodeConfig, ItsFilesAreProgramAndArguments) {
+  const auto directory =
+      std::filesystem::path(testing::TempDir()) / ("own-node-" + std::to_string(getpid()));
+  std::filesystem::create_directories(directory);
+  std::ofstream(directory / "model.sh") << "exit\n";
+  OwnNode node{.name = "gnc",
+               .where = "",
+               .run = {"sh", "model.sh", "--fast"},
+               .run_where = "",
+               .directory = directory.string()};
+  const auto files = files_of({node});
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0], program_of(node));
+  EXPECT_THAT(files[0], testing::EndsWith("/sh"));
+  EXPECT_EQ(files[1], (directory / "model.sh").string());
+  node.run = {"./model.sh"};
+  EXPECT_EQ(program_of(node), "");  // may not be executed
+  std::filesystem::permissions(directory / "model.sh", std::filesystem::perms::owner_all);
+  EXPECT_EQ(program_of(node), (directory / "./model.sh").string());
+  std::filesystem::remove_all(directory);
+}
+
+class NodesOfObjects : public testing::Test {
+ protected:
+  static Scenario load(const std::string& objects, const std::string& nodes) {
+    return read_scenario(YamlValue::parse(
+        "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 30, tick_s: 5}\nobjects:\n" +
+            objects + "nodes: " + nodes +
+            "\nsensors:\n  - {name: eye, site: {latitude_deg: 30, longitude_deg: 0, height_m: 0}, "
+            "camera: {optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: 0.1, "
+            "aperture_m: 0.05}, detector: {full_well_e: 20000, gain_e_per_dn: 1}, band: "
+            "{centre_m: 0.55e-6, width_m: 0.1e-6}}, pointing: zenith, exposure_s: 5, cadence_s: "
+            "10}\n",
+        "s.yaml"));
+  }
+};
+
+TEST_F(NodesOfObjects, EachObjectHasItsPlaceAmongThoseOfItsNode) {
+  const Scenario scenario = load(
+      "  - {name: a, motion: {node: one}}\n"
+      "  - {name: b, motion: {node: two}, attitude: {node: one}}\n"
+      "  - {name: c, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}, attitude: {node: two}}\n"
+      "  - {name: d, motion: {node: one}, attitude: {node: one}}\n",
+      "[{name: one, run: [sh]}, {name: two, run: [sh]}]");
+  const auto& objects = scenario.own_objects;
+  EXPECT_EQ(motion_by_node(objects[0])->place, 0u);
+  EXPECT_EQ(motion_by_node(objects[1])->place, 0u);
+  EXPECT_EQ(attitude_by_node(objects[1])->place, 1u);
+  EXPECT_FALSE(motion_by_node(objects[2]));
+  EXPECT_EQ(attitude_by_node(objects[2])->place, 1u);
+  EXPECT_EQ(motion_by_node(objects[3])->place, 2u);
+  EXPECT_EQ(attitude_by_node(objects[3])->place, 2u);
+}
+
+TEST_F(NodesOfObjects, NamesMustMatch) {
+  const auto complaint = [](const std::string& objects, const std::string& nodes) {
+    return config_error_of([&] { load(objects, nodes); });
+  };
+  EXPECT_THAT(complaint("  - {name: a, motion: {node: gnd}}\n", "[{name: gnc, run: [sh]}]"),
+              HasSubstr("s.yaml:3:30: objects[0].motion.node: no node of `nodes` has this name, "
+                        "did you mean gnc?, got gnd"));
+  EXPECT_THAT(complaint("  - {name: a, motion: {node: gnc}}\n",
+                        "[{name: gnc, run: [sh]}, {name: idle, run: [sh]}]"),
+              HasSubstr("nodes[1]: moves and turns no object"));
+  EXPECT_THAT(complaint("  - {name: a, motion: {node: eye}}\n", "[{name: eye, run: [sh]}]"),
+              HasSubstr("nodes[0].name: another node has this name, got eye"));
+  EXPECT_THAT(complaint("  - {name: a, motion: {node: broker}}\n", "[{name: broker, run: [sh]}]"),
+              HasSubstr("another node has this name"));
+}
+
+}  // namespace
+}  // namespace dmise
