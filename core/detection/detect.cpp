@@ -20,6 +20,7 @@
 #include "core/detection/scene.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_motion.h"
+#include "core/detection/template_snr.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -100,6 +101,15 @@ bool is_row_of_stars(const Scene& scene, const Source& source) {
   const double stars = std::sqrt(std::max(scatter * scatter - noise * noise, 0.0));
   return std::hypot(detection_limits::least_snr * noise,
                     detection_limits::least_snr_in_stars * stars) > 1;
+}
+
+/// Whether noise may have made a streak: its light is not sure with the errors of its ends and of
+/// columns, and the noise of its pixels alone does not exclude it.
+bool is_lost_in_its_errors(const Scene& scene, const FrameHeader& header, Source source) {
+  if (!source.streak) return false;
+  if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
+  return source.snr() < detection_limits::least_published_snr &&
+         template_snr(scene, source.trail()) < detection_limits::sure_snr;
 }
 
 std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
@@ -208,6 +218,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     add_errors_of_hidden_ends(scene, seen);
     if (seen.snr() < detection_limits::least_light_snr) continue;
     add_neglected_errors(source, ends ? &*ends : nullptr);
+    if (is_lost_in_its_errors(scene, header, source)) continue;
     if (!ends) add_errors_of_hidden_ends(scene, source);
     if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
     Detection d = describe(source, header);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <limits>
 
 namespace dmise {
@@ -23,9 +24,10 @@ double wavelength_of_dry_air_m(double refractivity);
 
 /// Bending of light by the air over a ground site. Elevations are over its horizon; "true" is as
 /// without air, "apparent" is what the camera sees. To 75 deg from the zenith ERFA's eraRefco, from
-/// 80 deg down Bennett 1982 scaled to join it, between them a smooth blend; constant under the
-/// apparent horizon. Finite and monotone at every elevation. Rays traced through the standard
-/// atmosphere differ by 0.1 arcsec to 75 deg, 0.5 at 80, 5 at 88, 50 at the horizon.
+/// 80 deg down Bennett 1982 scaled to join it and brought to rays that were traced through standard
+/// atmospheres of -20 to 35 C and 620 to 1013 hPa, between them a smooth blend; constant under the
+/// apparent horizon. Finite and monotone at every elevation. Traced rays differ by 0.1 arcsec to 75
+/// deg, by 0.2 % below. Real air differs from any standard one, at the horizon by several percent.
 ///
 /// A body at a finite distance above the air is lifted less than a star: its light comes along a
 /// line that passes the observer aside. `distance_m` is along the straight line to it.
@@ -68,6 +70,7 @@ class Refraction {
   double wavelength_um_ = 0.55;
   double tan_term_rad_ = 0.0, tan3_term_rad_ = 0.0;  // of the apparent zenith distance
   double bennett_scale_ = 0.0;                       // 0: no air
+  std::array<double, 2> bends_{};                    // how much more traced rays are bent
   double refractivity_ = 0.0;                        // n - 1 at the observer
   double scale_height_m_ = 0.0;                      // of the air's density at the observer
   double aside_at_horizon_ = 1.0;                    // keeps `aside_m` finite: its two constants

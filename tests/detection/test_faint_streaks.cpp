@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/detection/detect.h"
+#include "core/detection/detection_limits.h"
 #include "tests/support/simulated_frame.h"
 
 // Streaks of which no pixel stands out of the noise.
@@ -27,6 +29,7 @@ double flux_of_snr(const FrameHeader& h, double length, double snr) {
 
 struct Found {
   int found = 0, placed = 0, false_alarms = 0;
+  double least_snr = 1e9;  // that is published
 };
 
 /// Streaks on a grid of a frame, and what the detector makes of them.
@@ -47,6 +50,7 @@ Found found_of(double length, double snr, int frames, int stars, double sagitta 
       streaks.push_back({x, y, angle});
     }
     const auto result = detect(frame.expose(), header, {}, threads);
+    for (const Detection& d : result.detections) out.least_snr = std::min(out.least_snr, d.snr);
     std::vector<bool> used(result.detections.size());
     for (const auto& [x, y, angle] : streaks) {
       bool found = false;
@@ -75,6 +79,16 @@ TEST(FaintStreaks, AreFoundAtAnSnrThatTheirPixelsDoNotShow) {
     EXPECT_GT(found.found, 0.85 * found.placed) << length;  // Q(7.7 - 9.5) = 0.96
     EXPECT_EQ(found.false_alarms, 0) << length;
   }
+}
+
+// Light that its own error does not exclude is no detection, however well a line fits it.
+TEST(FaintStreaks, AreNotPublishedBelowTheThreshold) {
+  for (const double length : {30.0, 100.0, 300.0})
+    for (const double snr : {7.5, 8.5}) {
+      const Found found = found_of(length, snr, 3, 0);
+      EXPECT_GE(found.least_snr, detection_limits::least_published_snr) << length << ", " << snr;
+      EXPECT_GT(found.found, 0) << length << ", " << snr;
+    }
 }
 
 TEST(FaintStreaks, AreFoundAmongStars) {
