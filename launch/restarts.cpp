@@ -33,17 +33,20 @@ std::string Restarts::reason(const Child& child, const RunStatus& status, Instan
   if (child.exit_code && *child.exit_code > killed_by)
     return std::string("was killed (") + strsignal(*child.exit_code - killed_by) + ")";
   const auto last = last_.find(child.name);
-  // It was refused, or could not begin. A scenario that it can't use (2) stays the same.
-  if (child.exit_code && *child.exit_code == 1 &&
-      std::ranges::find(status.missing, child.name) != status.missing.end() &&
-      (last == last_.end() || now - last->second >= between_starts))
-    return "has ended before it joined";
-  // A process that was just started needs time to join.
-  if (last != last_.end() &&
-      std::chrono::duration<double>(now - last->second).count() < network_.join_within_s)
-    return "";
-  for (const NodeStatus& node : status.nodes)
-    if (node.name == child.name && !node.alive) return child.exit_code ? "has ended" : "was silent";
+  const auto wait = last == last_.end() ? std::chrono::nanoseconds::max() : now - last->second;
+  const auto known = std::ranges::find(status.nodes, child.name, &NodeStatus::name);
+  // It was refused, as by a master that has not missed its predecessor, or could not begin. A
+  // scenario that it can't use (2) stays the same.
+  if (child.exit_code == 1) {
+    if (wait < between_starts) return "";
+    const bool missing = std::ranges::find(status.missing, child.name) != status.missing.end();
+    if (missing || (known == status.nodes.end() && !status.nodes.empty()))
+      return "has ended before it joined";
+  } else if (std::chrono::duration<double>(wait).count() < network_.join_within_s) {
+    return "";  // a process that was just started needs time to join
+  }
+  if (known != status.nodes.end() && !known->alive)
+    return child.exit_code ? "has ended" : "was silent";
   return "";
 }
 

@@ -36,8 +36,8 @@ def test(binary, directory):
                               network=f", join_within_s: {JOIN_WITHIN_S}")
     for name in ("alpha", "orbit-node", "host-1"):
         out = directory / f"restart-{name}"
-        code, took_s, _, restarts, _ = killed_at_once(binary, scenario, out, name, "--hosts", 2)
-        check(code == 0 and took_s < JOIN_WITHIN_S / 2, f"behind agents, {name} killed at once: code {code} after {took_s:.1f} s")
+        code, took_s, _, restarts, said = killed_at_once(binary, scenario, out, name, "--hosts", 2)
+        check(code == 0 and took_s < JOIN_WITHIN_S / 2, f"behind agents, {name} killed at once: code {code} after {took_s:.1f} s: {said[-600:] if code else ''}")
         check(restarts.get(name, 0) <= 1, f"it was started again once: {restarts}")
         check_same(out, reference, f"{name} was started again")
 
