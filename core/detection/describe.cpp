@@ -144,10 +144,14 @@ struct SourceLine {
   std::function<MeasuredPlace(double)> point;  // of the line: -1 and 1 are its ends
 };
 
+/// Whether a streak's end is the first of both.
+bool is_end1(const PixelPosition& a, const PixelPosition& b) {
+  return a.x_px < b.x_px || (a.x_px == b.x_px && a.y_px < b.y_px);
+}
+
 void describe_ends(const SourceLine& source, const FrameHeader& header, Detection& d) {
   auto [first, last] = source.ends;
-  const PixelPosition a = first.place, b = last.place;
-  if (b.x_px < a.x_px || (b.x_px == a.x_px && b.y_px < a.y_px)) std::swap(first, last);
+  if (is_end1(last.place, first.place)) std::swap(first, last);
   d.end1_x_px = first.place.x_px;
   d.end1_y_px = first.place.y_px;
   d.end2_x_px = last.place.x_px;
@@ -276,8 +280,8 @@ Detection describe(const SourceLine& source, const FrameHeader& header) {
 }
 
 /// Error of a point of a line, of which those of centroid and ends are known.
-std::array<double, 3> covariance_between(const MeasuredSource& source, double r) {
-  const auto& end = source.ends->at(r < 0 ? 0 : 1).covariance_px2;
+std::array<double, 3> covariance_between(const SourceLine& source, double r) {
+  const auto& end = source.ends[r < 0 ? 0 : 1].covariance_px2;
   std::array<double, 3> covariance{};
   for (std::size_t i = 0; i < 3; ++i)
     covariance[i] = (1 - r * r) * source.centroid.covariance_px2[i] + r * r * end[i];
@@ -318,7 +322,8 @@ Detection describe(const MeasuredSource& source, const FrameHeader& header, bool
                       .knows_slope = true,
                       .point = [&](double) { return source.centroid; }};
   if (source.ends) {
-    const auto& [first, last] = *source.ends;
+    auto [first, last] = *source.ends;
+    if (is_end1(last.place, first.place)) std::swap(first, last);
     const PixelPosition way = last.place - first.place;
     const double length_px = std::hypot(way.x_px, way.y_px);
     const double c = way.x_px / length_px, s = way.y_px / length_px;
@@ -326,12 +331,12 @@ Detection describe(const MeasuredSource& source, const FrameHeader& header, bool
     const PixelPosition half = way * 0.5, off = source.centroid.place - (first.place + half);
     const double across_px = off.y_px * c - off.x_px * s;
     measured.streak = true;
-    measured.ends = *source.ends;
+    measured.ends = {first, last};
     measured.middle = first.place + half + PixelPosition{-s, c} * across_px;
     measured.length_px = length_px;
     measured.angle_rad = std::atan2(way.y_px, way.x_px);
-    measured.point = [&source, half, middle = measured.middle](double r) {
-      return MeasuredPlace{middle + half * r, covariance_between(source, r)};
+    measured.point = [&measured, half](double r) {
+      return MeasuredPlace{measured.middle + half * r, covariance_between(measured, r)};
     };
   }
   return describe(measured, header);
