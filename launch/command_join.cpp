@@ -186,7 +186,8 @@ class Join {
       add({"--digest", digest_, "--seed", std::to_string(scenario_.seed)});
     if (kind && kind->each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
     all.insert(all.end(), options_.more.begin(), options_.more.end());
-    if (kind && kind->each_own_node && options_.allow_programs) add({"--allow-programs"});
+    if (kind && starts_program(*kind, name, scenario_) && options_.allow_programs)
+      add({"--allow-programs"});
     if (options_.program.empty()) return all;
     add({"--"});
     for (auto& word : CLI::detail::split_up(options_.program)) all.push_back(std::move(word));

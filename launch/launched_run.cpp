@@ -136,6 +136,10 @@ class Launch {
            "--on-silent",     policy});
   }
 
+  bool is_elsewhere(const std::string& node) const {
+    return std::ranges::find(scenario_.own_nodes, node, &OwnNode::name)->run.empty();
+  }
+
   void start_nodes(const std::string& master) {
     start("broker", "dmise-broker", {"--master", master});
     const std::vector<std::string> common{"--config",  options_.scenario,
@@ -148,7 +152,7 @@ class Launch {
     for (const NodeKind& kind : node_kinds()) {
       const auto nodes = nodes_of(kind, scenario_);
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (kind.each_own_node && scenario_.own_nodes[i].run.empty()) continue;  // it joins
+        if (kind.each_own_node && is_elsewhere(nodes[i])) continue;  // it joins
         auto arguments = common;
         const auto add = [&](std::initializer_list<std::string> more) {
           arguments.insert(arguments.end(), more);
@@ -160,7 +164,7 @@ class Launch {
         }
         add({"--name", nodes[i]});
         if (kind.writes_products) add({"--out", directory_.path()});
-        if (kind.each_own_node) add({"--allow-programs"});
+        if (starts_program(kind, nodes[i], scenario_)) add({"--allow-programs"});
         if (kind.each_sensor)
           add({"--digest", directory_.digest(), "--seed", std::to_string(scenario_.seed)});
         if (kind.each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});

@@ -9,6 +9,7 @@
 #include "nodes/environment/environment_actor.h"
 #include "nodes/fusion/fusion_journal.h"
 #include "nodes/own/own_actor.h"
+#include "nodes/own/own_detector.h"
 #include "nodes/runtime/process/event.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/frame_times.h"
@@ -35,15 +36,18 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
   const OwnNode& node = *std::ranges::find(nodes, name, &OwnNode::name);
   return std::make_unique<OwnActor>(
       parts.scenario, node, make_clock(parts.scenario),
-      OwnActorSettings{.log_path = parts.directory + "/logs/" + name + ".log",
-                       .error_prefix = name + ": ",
-                       .note = parts.note,
-                       .stop = &stop_signal()});
+      OwnNodeSettings{.log_path = parts.directory + "/logs/" + name + ".log",
+                      .error_prefix = name + ": ",
+                      .note = parts.note,
+                      .stop = &stop_signal()});
 }
 
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
+  SourceFinder finder =
+      own_finder(parts.scenario, node, parts.directory,
+                 {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
-                     parts.threads);
+                     parts.threads, std::move(finder));
 }
 
 std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {

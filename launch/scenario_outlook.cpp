@@ -28,6 +28,10 @@ std::string node_text(const Scenario& scenario, const OwnNode& node) {
   std::string text = "node " + node.name +
                      (node.run.empty() ? " is elsewhere"
                                        : " runs `" + command_text(node) + "` in " + node.directory);
+  std::vector<std::string> searched;
+  for (const SensorConfig& sensor : scenario.sensors)
+    if (sensor.detector && sensor.detector->node == node.name) searched.push_back(sensor.name);
+  if (!searched.empty()) text += "; it detects in frames of " + joined(searched);
   if (!moved.empty()) text += "; it moves " + joined(moved);
   if (!turned.empty()) text += "; it turns " + joined(turned);
   return text;

@@ -19,7 +19,8 @@ const std::vector<NodeKind> table{
     {.name = any_own_node,
      .program = "dmise-own-node",
      .topics = {"state/actor/"},
-     .wanted = [](const Scenario& s) { return !s.own_nodes.empty(); },
+     .wanted =
+         [](const Scenario& s) { return !std::ranges::all_of(s.own_nodes, &OwnNode::detects); },
      .each_own_node = true},
     {.name = any_sensor,
      .program = "dmise-sensor-node",
@@ -44,7 +45,8 @@ bool is_sensor(const std::string& name, const Scenario& scenario) {
 }
 
 bool is_own_node(const std::string& name, const Scenario& scenario) {
-  return std::ranges::any_of(scenario.own_nodes, [&](const auto& n) { return n.name == name; });
+  return std::ranges::any_of(scenario.own_nodes,
+                             [&](const auto& n) { return n.name == name && !n.detects; });
 }
 
 bool is_of(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
@@ -69,8 +71,13 @@ std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario
   if (kind.each_sensor)
     for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
   else
-    for (const auto& node : scenario.own_nodes) names.push_back(node.name);
+    for (const auto& node : scenario.own_nodes)
+      if (!node.detects) names.push_back(node.name);
   return names;
+}
+
+bool starts_program(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
+  return kind.each_own_node || (kind.each_sensor && sensor_named(scenario, name).detector);
 }
 
 std::vector<std::string> nodes_of(const Scenario& scenario) {

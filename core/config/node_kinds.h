@@ -20,7 +20,7 @@ struct NodeKind {
   bool (*wanted)(const Scenario&);
   bool writes_products = false;  // into the directory of the run
   bool each_sensor = false;
-  bool each_own_node = false;  // of `nodes`: runs a program of the user's
+  bool each_own_node = false;  // of `nodes` that move or turn objects: runs a program of the user's
 };
 
 /// The table of kinds, in the order in which their nodes are started and called.
@@ -31,5 +31,7 @@ const NodeKind* kind_of_node(const std::string& name, const Scenario& scenario);
 std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario);
 /// Names of all nodes that the scenario needs.
 std::vector<std::string> nodes_of(const Scenario& scenario);
+/// Whether the process of such a node starts a program of the user's.
+bool starts_program(const NodeKind& kind, const std::string& name, const Scenario& scenario);
 
 }  // namespace dmise

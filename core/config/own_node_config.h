@@ -10,7 +10,8 @@ namespace dmise {
 class YamlValue;
 class JsonWriter;
 
-/// A program of the user's that is a node of the run: `{name: gnc, run: [python3, gnc.py]}`.
+/// A program of the user's that is a node of the run, or the detector of sensors: `{name: gnc, run:
+/// [python3, gnc.py]}`.
 struct OwnNode {
   std::string name;
   std::string where;             // `file:line:column: nodes[0]`, for messages
@@ -19,6 +20,7 @@ struct OwnNode {
   std::string directory;         // in which it runs: that of the scenario
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
+  bool detects = false;  // in the frames of sensors, in whose processes it runs; else it is a node
 };
 
 /// The keys of a node, for lists of them.

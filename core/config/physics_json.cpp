@@ -68,6 +68,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   }
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
   if (!s.detect) json.field("detection", false);
+  if (s.detector) json.field("detector", s.detector->node);
   if (!s.recorded_plans.empty()) {
     json.key("recorded_plans").begin_object();
     for (const auto& [frame, levels] : s.recorded_plans) {

@@ -227,6 +227,25 @@ void require_own_node(const Scenario& scenario, const std::string& name, const s
                     ", got " + printable(name));
 }
 
+/// Marks the nodes that detect in the frames of sensors.
+void assign_detectors(Scenario& scenario) {
+  for (const SensorConfig& sensor : scenario.sensors) {
+    if (!sensor.detector) continue;
+    const auto& [name, where] = *sensor.detector;
+    require_own_node(scenario, name, where);
+    OwnNode& node = *std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
+    node.detects = true;
+    if (node.run.empty())
+      throw ConfigError(where + ": its node is elsewhere, but a sensor starts its detector: " +
+                        name + " needs run");
+    if (node.period_ticks != 1)
+      throw ConfigError(node.where +
+                        ".period_ticks: a detector is asked for each frame: must be "
+                        "1, got " +
+                        std::to_string(node.period_ticks));
+  }
+}
+
 /// Gives each object that a node moves or turns its place among those of the node.
 void assign_own_nodes(Scenario& scenario) {
   std::map<std::string, std::size_t> counts;
@@ -243,10 +262,14 @@ void assign_own_nodes(Scenario& scenario) {
     const bool both = motion && motion->node == attitude->node;
     attitude->place = both ? motion->place : counts[attitude->node]++;
   }
-  for (const OwnNode& node : scenario.own_nodes)
-    if (!counts.contains(node.name))
+  assign_detectors(scenario);
+  for (const OwnNode& node : scenario.own_nodes) {
+    if (node.detects && counts.contains(node.name))
+      throw ConfigError(node.where + ": moves or turns objects and detects: give each a node");
+    if (!node.detects && !counts.contains(node.name))
       throw ConfigError(node.where + ": moves and turns no object (motion: {node: " + node.name +
-                        "})");
+                        "}), and no sensor detects by it (detection: {node: " + node.name + "})");
+  }
 }
 
 }  // namespace
@@ -258,7 +281,8 @@ const Section& scenario_section() {
       {required("simulation", form::map(simulation_section), "The run."),
        optional("objects", objects_forms(), "Catalogues of objects, and objects of one's own."),
        optional("nodes", own_nodes_forms(),
-                "Programs of one's own that take part in the run: they move objects."),
+                "Programs of one's own that take part in the run: they move objects, or detect in "
+                "the frames of sensors."),
        optional("stars", form::map(stars_section), "The stars; without it there are none."),
        required("sensors", form::list(form::map(sensor_section), 1), "The sensors, at least one."),
        optional("accuracy", accuracy_forms(), "How accurate frames must be, for all sensors.",

@@ -139,8 +139,14 @@ struct SensorConfig {
   /// Of a sensor that is planned: effects of the scenario before the plan, for truth.
   std::optional<EffectSet> unplanned = {};
   std::optional<double> synthetic_stars_to_v_mag = {};  // the scenario's; none: there are none
-  bool detect = true;                 // false: frames are reported without detection
-  RecordedPlans recorded_plans = {};  // of a run that is replayed; empty: frames are planned
+  bool detect = true;  // false: frames are reported without detection
+  // Of a program that detects in its frames.
+  struct Detector {
+    std::string node;   // of `nodes`
+    std::string where;  // `file:line:column: key`, for messages
+  };
+  std::optional<Detector> detector = {};  // none: our own
+  RecordedPlans recorded_plans = {};      // of a run that is replayed; empty: frames are planned
 };
 
 enum class OnSilentNode { fail, wait, drop, restart };

@@ -133,6 +133,26 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   }
 }
 
+const Section& detection_section() {
+  static const Section section{
+      "detection",
+      "Detection by a program of one's own.",
+      {required("node", form::text(), "One of `nodes`, which is asked for each frame.")}};
+  return section;
+}
+
+void read_detection(const YamlValue& value, SensorConfig& sensor) {
+  if (!value.is_map()) {
+    sensor.detect = value.flag();
+    return;
+  }
+  YamlMap map(value, detection_section());
+  const YamlValue node = map.require("node");
+  sensor.detect = true;
+  sensor.detector = {.node = node.text(), .where = node.place()};
+  map.done();
+}
+
 }  // namespace
 
 const Section& site_section() {
@@ -169,9 +189,9 @@ const Section& sensor_section() {
                     "Time from the beginning of an exposure to that of the next [s]."),
            optional("first_exposure_s", form::not_negative(),
                     "Beginning of the first exposure after the start of the run [s].", "0"),
-           optional("detection", form::flag(),
-                    "Whether moving objects are detected in the frames. By default as the scenario "
-                    "says."),
+           optional("detection", form::flag() | form::map(detection_section),
+                    "Whether moving objects are detected in the frames, or by what program. By "
+                    "default as the scenario says."),
            optional("accuracy", accuracy_forms(),
                     "How accurate frames must be. By default as the scenario says."),
            optional("effects", effects_forms(), "Effects of this sensor, after the scenario's."),
@@ -196,7 +216,8 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   sensor.earth_albedo = earth.albedo;
   if (const auto own = map.find("accuracy")) sensor.accuracy = read_accuracy(*own);
   const auto detection = map.find("detection");
-  sensor.detect = detection ? detection->flag() : detect;
+  sensor.detect = detect;
+  if (detection) read_detection(*detection, sensor);
   sensor.name = map.require("name").text();
   const auto site = map.find("site");
   const auto platform = map.find("platform");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "core/base/units.h"
@@ -68,12 +69,10 @@ std::array<double, 3> on_the_sky(const std::array<double, 3>& covariance_px2, co
 }
 
 /// Centroid of light: a brightness slope moves it off the line's middle.
-void describe_centroid(const Source& source, Detection& d) {
+MeasuredPlace centroid_of(const Source& source) {
   const Trail& t = source.trail();
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
   const double shift = t.slope * t.length_px / 6;
-  d.x_px = t.x_px + shift * c;
-  d.y_px = t.y_px + shift * s;
   const PlaceBy by = {{{1, 0},
                        {0, 1},
                        {0, 0},
@@ -81,16 +80,11 @@ void describe_centroid(const Source& source, Detection& d) {
                        {-shift * s, shift * c},
                        {t.length_px / 6 * c, t.length_px / 6 * s},
                        {0, 0}}};
-  d.covariance_px2 = covariance_of(source, by);
+  return {{t.x_px + shift * c, t.y_px + shift * s}, covariance_of(source, by)};
 }
 
 /// A point of the curved line: -1 and 1 are its ends, 0 its middle.
-struct LinePoint {
-  PixelPosition place;
-  std::array<double, 3> covariance_px2;
-};
-
-LinePoint line_point(const Source& source, double r) {
+MeasuredPlace line_point(const Source& source, double r) {
   const Trail& t = source.trail();
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
   const double along = r * t.length_px / 2, bend = 1.0 / 3 - r * r, across = bend * t.sagitta_px;
@@ -114,8 +108,9 @@ void add_along(std::array<double, 3>& covariance, double x, double y, double var
 
 /// An end of the line, with errors for neglected terms of a trail's curvature (third power) and
 /// brightness (second): sizes measured on low orbits.
-LinePoint line_end(const Source& source, const FrameHeader& header, double side, double arc_rad) {
-  LinePoint end = line_point(source, side);
+MeasuredPlace line_end(const Source& source, const FrameHeader& header, double side,
+                       double arc_rad) {
+  MeasuredPlace end = line_point(source, side);
   const Trail& t = source.trail();
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
   const double along_px = 0.05 * header.psf_fwhm_px * arc_rad * arc_rad;
@@ -136,19 +131,34 @@ SimTime row_delay(const FrameHeader& header, double y_px) {
   return {1000 * std::llround(header.detector->row_time_us * std::max(y_px, 0.0))};
 }
 
-void describe_ends(const Source& source, const FrameHeader& header, Detection& d) {
-  const double arc_rad = arc_of(source, header);
-  LinePoint first = line_end(source, header, -1, arc_rad);
-  LinePoint last = line_end(source, header, 1, arc_rad);
-  const PixelPosition a = first.place, b = last.place;
-  if (b.x_px < a.x_px || (b.x_px == a.x_px && b.y_px < a.y_px)) std::swap(first, last);
+/// A source as whoever found it measured it, in pixels and electrons.
+struct SourceLine {
+  bool streak = false, saturated = false, at_edge = false;
+  double light_e = 0.0, snr = 0.0;
+  MeasuredPlace centroid;
+  std::array<MeasuredPlace, 2> ends;
+  // The line through the light, in which a slope of brightness or a bend may have been neglected.
+  PixelPosition middle;
+  double length_px = 0.0, angle_rad = 0.0;
+  bool knows_slope = false, knows_bend = false;
+  std::function<MeasuredPlace(double)> point;  // of the line: -1 and 1 are its ends
+};
+
+/// Whether a streak's end is the first of both.
+bool is_end1(const PixelPosition& a, const PixelPosition& b) {
+  return a.x_px < b.x_px || (a.x_px == b.x_px && a.y_px < b.y_px);
+}
+
+void describe_ends(const SourceLine& source, const FrameHeader& header, Detection& d) {
+  auto [first, last] = source.ends;
+  if (is_end1(last.place, first.place)) std::swap(first, last);
   d.end1_x_px = first.place.x_px;
   d.end1_y_px = first.place.y_px;
   d.end2_x_px = last.place.x_px;
   d.end2_y_px = last.place.y_px;
   d.end1_covariance_rad2 = on_the_sky(first.covariance_px2, header.wcs, first.place);
   d.end2_covariance_rad2 = on_the_sky(last.covariance_px2, header.wcs, last.place);
-  d.length_px = source.streak ? source.trail().length_px : 0.0;
+  d.length_px = source.streak ? source.length_px : 0.0;
   const Vec<Gcrs> end1 = wcs_direction(header.wcs, first.place);
   const Vec<Gcrs> end2 = wcs_direction(header.wcs, last.place);
   std::tie(d.end1_ra_rad, d.end1_dec_rad) = std::tuple_cat(to_spherical(end1));
@@ -170,33 +180,32 @@ double slope_of(const FrameHeader& header, PixelPosition end1, PixelPosition end
 
 /// The object's position on the line at mid exposure, and its error along the line.
 struct MidPoint {
-  LinePoint point;
+  MeasuredPlace point;
   Vec<Gcrs> track;  // from end to end
   double sigma_rad = 0.0;
 };
 
-MidPoint mid_point(const Source& source, const FrameHeader& header) {
-  if (!source.streak) return {line_point(source, 0.0), {}, 0.0};
-  const Trail& t = source.trail();
-  const PixelPosition first = line_point(source, -1).place, last = line_point(source, 1).place;
+MidPoint mid_point(const SourceLine& source, const FrameHeader& header) {
+  if (!source.streak) return {source.point(0.0), {}, 0.0};
+  const PixelPosition first = source.point(-1).place, last = source.point(1).place;
   const Vec<Gcrs> end1 = wcs_direction(header.wcs, first), end2 = wcs_direction(header.wcs, last);
   const MidExposure mid = mid_exposure(header, end1, end2, source.at_edge);
   const auto pixel = wcs_pixel(header.wcs, mid.direction);
-  if (!pixel || !(t.length_px > 0)) return {line_point(source, 0.0), end2 - end1, mid.sigma_rad};
-  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  const PixelPosition way = *pixel - PixelPosition{t.x_px, t.y_px};
+  if (!pixel || !(source.length_px > 0)) return {source.point(0.0), end2 - end1, mid.sigma_rad};
+  const double c = std::cos(source.angle_rad), s = std::sin(source.angle_rad);
+  const PixelPosition way = *pixel - source.middle;
   double along_px = way.x_px * c + way.y_px * s, uneven_px = 0.0;
-  if (!(source.free & trail_slope)) {
+  if (!source.knows_slope) {
     // Fitted as even: its centroid is towards the brighter end, where the object is nearer and
     // higher.
     const double slope = slope_of(header, first, last, mid.end1_range_over_end2);
-    uneven_px = slope * t.length_px / 6;
+    uneven_px = slope * source.length_px / 6;
     along_px -= uneven_px;
   }
-  const double r = std::clamp(2 * along_px / t.length_px, -1.0, 1.0);
-  LinePoint point = line_point(source, r);
+  const double r = std::clamp(2 * along_px / source.length_px, -1.0, 1.0);
+  MeasuredPlace point = source.point(r);
   add_along(point.covariance_px2, c, s, std::pow(slope_error * uneven_px, 2));
-  if (!(source.free & trail_sagitta) && std::abs(r) < most_off_middle) {
+  if (!source.knows_bend && std::abs(r) < most_off_middle) {
     // Fitted as straight: it bends as the orbit through its ends does in this projection.
     const double sagitta_px = (way.y_px * c - way.x_px * s) / (1 - r * r);
     const double across_px = sagitta_px * (1.0 / 3 - r * r);
@@ -206,7 +215,7 @@ MidPoint mid_point(const Source& source, const FrameHeader& header) {
   return {point, end2 - end1, mid.sigma_rad};
 }
 
-void describe_direction(const Source& source, const FrameHeader& header, Detection& d) {
+void describe_direction(const SourceLine& source, const FrameHeader& header, Detection& d) {
   const MidPoint mid = mid_point(source, header);
   const SimTime delay = row_delay(header, mid.point.place.y_px);
   d.time = header.middle + delay;
@@ -245,9 +254,7 @@ double light_without_noise_e(const Source& source) {
   return source.trail().flux_e * (1.0 - std::popcount(source.free & shape) / (2.0 * snr * snr));
 }
 
-}  // namespace
-
-Detection describe(const Source& source, const FrameHeader& header) {
+Detection describe(const SourceLine& source, const FrameHeader& header) {
   Detection d;
   d.sensor = header.sensor;
   d.frame = header.frame;
@@ -256,18 +263,83 @@ Detection describe(const Source& source, const FrameHeader& header) {
   d.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
   d.aberration_removed = true;
   d.band = header.band.name;
-  d.signal_e = light_without_noise_e(source);
-  d.snr = source.snr();
+  d.signal_e = source.light_e;
+  d.snr = source.snr;
   d.magnitude = header.zero_point_mag - 2.5 * std::log10(d.signal_e / header.exposure_s) -
-                extinction_mag(header, {source.trail().x_px, source.trail().y_px});
+                extinction_mag(header, source.middle);
   d.magnitude_system = header.magnitudes.system;
   d.magnitude_sigma = 2.5 / std::log(10.0) / d.snr;
   d.saturated = source.saturated;
   d.at_edge = source.at_edge;
-  describe_centroid(source, d);
+  d.x_px = source.centroid.place.x_px;
+  d.y_px = source.centroid.place.y_px;
+  d.covariance_px2 = source.centroid.covariance_px2;
   describe_ends(source, header, d);
   describe_direction(source, header, d);
   return d;
+}
+
+/// Error of a point of a line, of which those of centroid and ends are known.
+std::array<double, 3> covariance_between(const SourceLine& source, double r) {
+  const auto& end = source.ends[r < 0 ? 0 : 1].covariance_px2;
+  std::array<double, 3> covariance{};
+  for (std::size_t i = 0; i < 3; ++i)
+    covariance[i] = (1 - r * r) * source.centroid.covariance_px2[i] + r * r * end[i];
+  return covariance;
+}
+
+}  // namespace
+
+Detection describe(const Source& source, const FrameHeader& header) {
+  const Trail& t = source.trail();
+  const double arc_rad = arc_of(source, header);
+  return describe(SourceLine{.streak = source.streak,
+                             .saturated = source.saturated,
+                             .at_edge = source.at_edge,
+                             .light_e = light_without_noise_e(source),
+                             .snr = source.snr(),
+                             .centroid = centroid_of(source),
+                             .ends = {line_end(source, header, -1, arc_rad),
+                                      line_end(source, header, 1, arc_rad)},
+                             .middle = {t.x_px, t.y_px},
+                             .length_px = t.length_px,
+                             .angle_rad = t.angle_rad,
+                             .knows_slope = bool(source.free & trail_slope),
+                             .knows_bend = bool(source.free & trail_sagitta),
+                             .point = [&](double r) { return line_point(source, r); }},
+                  header);
+}
+
+Detection describe(const MeasuredSource& source, const FrameHeader& header, bool saturated,
+                   bool at_edge) {
+  SourceLine measured{.saturated = saturated,
+                      .at_edge = at_edge,
+                      .light_e = source.light_e,
+                      .snr = source.snr,
+                      .centroid = source.centroid,
+                      .ends = {source.centroid, source.centroid},
+                      .middle = source.centroid.place,
+                      .knows_slope = true,
+                      .point = [&](double) { return source.centroid; }};
+  if (source.ends) {
+    auto [first, last] = *source.ends;
+    if (is_end1(last.place, first.place)) std::swap(first, last);
+    const PixelPosition way = last.place - first.place;
+    const double length_px = std::hypot(way.x_px, way.y_px);
+    const double c = way.x_px / length_px, s = way.y_px / length_px;
+    // The line is parallel to the chord, through the centroid: a bend moves that across.
+    const PixelPosition half = way * 0.5, off = source.centroid.place - (first.place + half);
+    const double across_px = off.y_px * c - off.x_px * s;
+    measured.streak = true;
+    measured.ends = {first, last};
+    measured.middle = first.place + half + PixelPosition{-s, c} * across_px;
+    measured.length_px = length_px;
+    measured.angle_rad = std::atan2(way.y_px, way.x_px);
+    measured.point = [&measured, half](double r) {
+      return MeasuredPlace{measured.middle + half * r, covariance_between(measured, r)};
+    };
+  }
+  return describe(measured, header);
 }
 
 }  // namespace dmise

@@ -1,4 +1,5 @@
 #pragma once
+#include "core/detection/measured_source.h"
 #include "core/detection/scene.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
@@ -14,5 +15,11 @@ namespace dmise {
 /// What was not fitted of both is taken from the circular orbit through the ends, and the air.
 /// covariance_rad2 includes the uncertainty of mid exposure and the error of the WCS.
 Detection describe(const Source& source, const FrameHeader& header);
+
+/// The same of what another detector found. Its centroid, ends, light and errors are taken as they
+/// are. Between its ends a streak is a line through its centroid, of even light, which bends as the
+/// orbit does.
+Detection describe(const MeasuredSource& source, const FrameHeader& header, bool saturated,
+                   bool at_edge);
 
 }  // namespace dmise

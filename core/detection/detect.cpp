@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/detection/atmosphere.h"
 #include "core/detection/background.h"
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
@@ -15,6 +14,7 @@
 #include "core/detection/hide_stars.h"
 #include "core/detection/judge_components.h"
 #include "core/detection/line_profile.h"
+#include "core/detection/make_report.h"
 #include "core/detection/neglected_errors.h"
 #include "core/detection/psf_measure.h"
 #include "core/detection/scene.h"
@@ -25,13 +25,6 @@
 
 namespace dmise {
 namespace {
-
-/// Lowest count of a clipped pixel: pixels at the full well have read noise.
-double lowest_clipped_dn(const FrameHeader& header) {
-  const double column_e = header.detector ? header.detector->column_noise_e : 0.0;
-  return header.saturation_dn -
-         5 * std::hypot(header.read_noise_e, column_e) / header.gain_e_per_dn;
-}
 
 /// Hides a component and what its light reaches.
 void hide(FilteredFrame& frame, const Component& component, int reach_px) {
@@ -112,53 +105,6 @@ bool is_lost_in_its_errors(const Scene& scene, const FrameHeader& header, Source
          template_snr(scene, source.trail()) < detection_limits::sure_snr;
 }
 
-std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
-  if (!(saturation_dn <= 65535.0)) return 0;
-  const auto least = std::uint16_t(std::max(std::ceil(saturation_dn), 0.0));
-  return std::uint32_t(std::count_if(counts.pixels.begin(), counts.pixels.end(),
-                                     [&](std::uint16_t v) { return v >= least; }));
-}
-
-PixelPosition centre_of(const CountImage& counts) {
-  return {(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0};
-}
-
-/// The part of the report that follows from the header.
-FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& header) {
-  FrameReport r;
-  r.sensor = header.sensor;
-  r.frame = header.frame;
-  r.start = header.start;
-  r.middle = header.middle;
-  r.end = header.end;
-  const auto place = to_spherical(wcs_direction(header.wcs, centre_of(counts)));
-  r.boresight_ra_rad = place[0];
-  r.boresight_dec_rad = place[1];
-  r.wcs = header.wcs;
-  r.sensor_position_m = header.sensor_position_m;
-  r.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
-  r.magnitudes = header.magnitudes;
-  r.zero_point_mag = header.zero_point_mag;
-  r.excluded = header.excluded;
-  r.shutter_closed = header.shutter_closed();
-  return r;
-}
-
-FrameReport make_report(const CountImage& counts, const FrameHeader& header,
-                        const Background& background, const PsfField& psf) {
-  const double sigma_px = psf.at(centre_of(counts)).equivalent_sigma_px();
-  FrameReport r = unmeasured_report(counts, header);
-  r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
-  r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
-  const double least_e = limiting_point_e(r.noise_e, sigma_px);
-  r.limiting_magnitude = r.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
-                         extinction_mag(header, centre_of(counts));
-  r.psf_fwhm_px = fwhm_before_pixel(sigma_px);
-  r.psf_stars = std::uint32_t(psf.stars);
-  r.saturated_px = count_saturated(counts, lowest_clipped_dn(header));
-  return r;
-}
-
 }  // namespace
 
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
@@ -221,11 +167,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     if (is_lost_in_its_errors(scene, header, source)) continue;
     if (!ends) add_errors_of_hidden_ends(scene, source);
     if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
-    Detection d = describe(source, header);
-    d.index = std::uint32_t(result.detections.size());
-    d.excluded = header.excluded.any();
-    d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);
-    result.detections.push_back(std::move(d));
+    add_detection(describe(source, header), header, result.detections);
   }
   result.report.detections = std::uint32_t(result.detections.size());
   return result;

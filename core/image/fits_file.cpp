@@ -151,6 +151,10 @@ void put_plain(const ByteSink& file, const CountImage& counts, std::span<const s
 
 }  // namespace
 
+std::vector<std::string> frame_file_cards(const CountImage& counts, const FrameHeader& header) {
+  return count_image_cards(counts.columns, counts.rows, frame_cards(counts, header, nullptr));
+}
+
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          const FlagImage* flags) {
   std::string file;

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/image.h"
 #include "core/detector/pixel_flags.h"
@@ -25,6 +26,9 @@ enum class FitsCompression { none, rice };
 /// WCSDVARR. Equal input gives equal bytes. Throws `Error`.
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          const FlagImage* flags = nullptr);
+
+/// The cards of 80 characters with which `encode_frame` begins, without END.
+std::vector<std::string> frame_file_cards(const CountImage& counts, const FrameHeader& header);
 
 /// Decodes a file of `write_frame`, or any FITS file with the same keywords. `name` is used in
 /// messages. Throws `ConfigError` "NAME: KEYWORD: reason" for any other input, malicious files

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint16_t zero = 32768;
 
-void put_header(const ByteSink& file, FitsPlace place, int bits, std::size_t columns,
-                std::size_t rows, std::span<const std::string> cards) {
+std::vector<std::string> header_cards(FitsPlace place, int bits, std::size_t columns,
+                                      std::size_t rows, std::span<const std::string> cards) {
   std::vector<std::string> all = {place == FitsPlace::primary
                                       ? flag_card("SIMPLE", true, "FITS Standard 4.0")
                                       : text_card("XTENSION", "IMAGE", ""),
@@ -31,7 +31,7 @@ void put_header(const ByteSink& file, FitsPlace place, int bits, std::size_t col
     all.push_back(integer_card("BSCALE", 1, ""));
   }
   all.insert(all.end(), cards.begin(), cards.end());
-  file(fits_header(all));
+  return all;
 }
 
 std::uint8_t stored(std::uint8_t pixel) { return pixel; }
@@ -45,7 +45,8 @@ static_assert(std::endian::native == std::endian::little);
 template <class T>
 void put(const ByteSink& file, FitsPlace place, int bits, std::span<const T> pixels, int columns,
          std::span<const std::string> cards) {
-  put_header(file, place, bits, std::size_t(columns), pixels.size() / std::size_t(columns), cards);
+  file(fits_header(header_cards(place, bits, std::size_t(columns),
+                                pixels.size() / std::size_t(columns), cards)));
   using Stored = decltype(stored(T{}));
   std::array<Stored, 65536 / sizeof(Stored)> piece;
   for (std::size_t done = 0; done < pixels.size(); done += piece.size()) {
@@ -57,6 +58,11 @@ void put(const ByteSink& file, FitsPlace place, int bits, std::span<const T> pix
 }
 
 }  // namespace
+
+std::vector<std::string> count_image_cards(int columns, int rows,
+                                           std::span<const std::string> cards) {
+  return header_cards(FitsPlace::primary, 16, std::size_t(columns), std::size_t(rows), cards);
+}
 
 void put_image(const ByteSink& file, FitsPlace place, std::span<const std::uint16_t> pixels,
                int columns, std::span<const std::string> cards) {

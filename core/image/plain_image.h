@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/image/fits_block.h"
 
@@ -18,5 +19,9 @@ void put_image(const ByteSink& file, FitsPlace place, std::span<const std::uint8
                int columns, std::span<const std::string> cards);
 void put_image(const ByteSink& file, FitsPlace place, std::span<const float> pixels, int columns,
                std::span<const std::string> cards);
+
+/// The cards that `put_image` writes of 16-bit pixels in the primary place, without END.
+std::vector<std::string> count_image_cards(int columns, int rows,
+                                           std::span<const std::string> cards);
 
 }  // namespace dmise

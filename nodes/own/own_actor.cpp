@@ -34,8 +34,12 @@ std::string list_text(std::span<const std::uint32_t> numbers) {
 }  // namespace
 
 OwnActor::OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock,
-                   OwnActorSettings settings)
-    : scenario_(scenario), node_(node), clock_(std::move(clock)), settings_(std::move(settings)) {
+                   OwnNodeSettings settings)
+    : scenario_(scenario),
+      node_(node),
+      clock_(std::move(clock)),
+      settings_(std::move(settings)),
+      restarts_(scenario.network, node.name, settings_) {
   for (const OwnObject& object : scenario.own_objects) {
     const bool turned = is_turned_by(node, object);
     if (!turned && !is_moved_by(node, object)) continue;
@@ -69,7 +73,8 @@ bool OwnActor::ask_up_to(Tick call) {
     try {
       if (!ask()) return false;
     } catch (const ProgramLost& lost) {
-      restart(lost);
+      program_.reset();
+      restarts_.after(lost, "tick " + std::to_string(tick_of(next_call_)));
     } catch (const Error& error) {
       throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(next_call_)) + ": " +
                   error.what());
@@ -100,13 +105,7 @@ bool OwnActor::ask() {
 }
 
 v1::OwnNodeBegin OwnActor::begin() const {
-  v1::OwnNodeBegin begin;
-  begin.set_options_json(node_.options_json);
-  begin.set_start_utc(scenario_.start_utc);
-  begin.set_tick_ns(scenario_.tick.ns);
-  begin.set_last_tick(scenario_.last_tick());
-  begin.set_period_ticks(std::uint32_t(node_.period_ticks));
-  begin.set_seed(scenario_.seed);
+  v1::OwnNodeBegin begin = begin_of(scenario_, node_);
   for (const OwnObject* object : objects_) {
     v1::OwnNodeObject& one = *begin.add_objects();
     one.set_name(object->name);
@@ -120,26 +119,7 @@ v1::OwnNodeBegin OwnActor::begin() const {
 
 void OwnActor::start() {
   next_call_ = checkpoint_ ? checkpoint_->call + 1 : 0;
-  ProgramSettings settings{.name = node_.name,
-                           .command = node_.run,
-                           .directory = node_.directory,
-                           .log_path = settings_.log_path,
-                           .start_within_s = scenario_.network.join_within_s,
-                           .silent_after_s = scenario_.network.silent_after_s,
-                           .stop = settings_.stop};
-  settings.command[0] = program_of(node_);
-  program_.emplace(settings, begin(), restarts_ > 0);
-}
-
-void OwnActor::restart(const ProgramLost& lost) {
-  program_.reset();
-  const NetworkConfig& network = scenario_.network;
-  const std::string text = "tick " + std::to_string(tick_of(next_call_)) + ": " + lost.what();
-  if (network.on_silent_node != OnSilentNode::restart || restarts_ >= network.restarts)
-    throw Error(settings_.error_prefix + text);
-  ++restarts_;
-  settings_.note(node_.name + ": " + text + ", and was restarted (" + std::to_string(restarts_) +
-                 " of " + std::to_string(network.restarts) + ")");
+  program_.emplace(program_settings(scenario_, node_, settings_), begin(), restarts_.any());
 }
 
 void OwnActor::check(const ObjectStates& states) const {

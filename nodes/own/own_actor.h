@@ -1,7 +1,6 @@
 #pragma once
 #include <atomic>
 #include <deque>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,16 +8,9 @@
 #include "core/config/scenario.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
-#include "nodes/own/own_program.h"
+#include "nodes/own/own_node_run.h"
 
 namespace dmise {
-
-struct OwnActorSettings {
-  std::string log_path;      // of the program's output; empty: stderr of this process
-  std::string error_prefix;  // of errors; empty where the run names the node
-  std::function<void(const std::string&)> note = [](const std::string&) {};  // hears lines
-  const Event* stop = nullptr;
-};
 
 /// Publishes what a program of the user's says of the objects that it moves or turns. Starts the
 /// program when its first step is due. Under `on_silent_node: restart` a program that dies or is
@@ -26,7 +18,7 @@ struct OwnActorSettings {
 class OwnActor : public Actor {
  public:
   /// `scenario` must outlive it.
-  OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock, OwnActorSettings settings);
+  OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock, OwnNodeSettings settings);
 
   std::string name() const override { return node_.name; }
   std::vector<std::string> produces() const override;
@@ -42,9 +34,7 @@ class OwnActor : public Actor {
   bool ask_up_to(Tick call);
   bool ask();
   void start();
-  void restart(const ProgramLost& lost);
   void check(const ObjectStates& states) const;
-  void check_attitudes(const ObjectStates& states) const;
   void require_same(std::uint64_t digest);
   void look_at_errors();
   v1::OwnNodeBegin begin() const;
@@ -54,7 +44,7 @@ class OwnActor : public Actor {
   const Scenario& scenario_;
   OwnNode node_;
   Clock clock_;
-  OwnActorSettings settings_;
+  OwnNodeSettings settings_;
   std::vector<const OwnObject*> objects_;  // in the scenario's order
   std::vector<std::uint32_t> turned_;      // of these, by index
   std::optional<OwnProgram> program_;
@@ -62,7 +52,7 @@ class OwnActor : public Actor {
   std::vector<std::uint64_t> digests_;  // of what it said, by call
   std::optional<Checkpoint> checkpoint_;
   std::deque<ObjectStates> held_;  // of the last calls
-  int restarts_ = 0;
+  OwnRestarts restarts_;
   std::vector<bool> warned_;  // of objects that are not interpolated well
   std::atomic<std::uint64_t> steps_{0};
 };

@@ -98,15 +98,15 @@ void OwnProgram::end(int signal) {
   pid_ = 0;
 }
 
-bool OwnProgram::try_to_send(const v1::OwnNodeRequest& request, const std::string& more) {
+bool OwnProgram::try_to_send(const v1::OwnNodeRequest& request, std::string_view more) {
   using zmq::send_flags;
   const auto part = more.empty() ? send_flags::none : send_flags::sndmore;
   if (!socket_.send(to_frame(request), part | send_flags::dontwait)) return false;
-  if (!more.empty()) socket_.send(zmq::buffer(more), send_flags::none);
+  if (!more.empty()) socket_.send(zmq::buffer(more.data(), more.size()), send_flags::none);
   return true;
 }
 
-bool OwnProgram::send(const v1::OwnNodeRequest& request, double within_s, const std::string& more) {
+bool OwnProgram::send(const v1::OwnNodeRequest& request, double within_s, std::string_view more) {
   const Instant begun = now();
   while (!stopped()) {
     if (try_to_send(request, more)) return true;
@@ -183,6 +183,20 @@ std::optional<OwnProgram::Stepped> OwnProgram::step(const v1::OwnNodeStep& step,
   if (got->head.stepped().has_checkpoint())
     stepped.checkpoint = std::move(*got->head.mutable_stepped()->mutable_checkpoint());
   return stepped;
+}
+
+std::optional<v1::OwnNodeFound> OwnProgram::find(const v1::OwnNodeFrame& frame,
+                                                 std::string_view counts) {
+  v1::OwnNodeRequest request;
+  *request.mutable_frame() = frame;
+  if (!send(request, settings_.silent_after_s, counts)) return std::nullopt;
+  auto got = answer(working_within_s);
+  if (!got) return std::nullopt;
+  if (!got->head.has_found()) throw Error("its program answers a frame by something else");
+  if (got->frames.size() != 1)
+    throw Error("its program answers in " + std::to_string(got->frames.size()) +
+                " frames instead of 1");
+  return std::move(*got->head.mutable_found());
 }
 
 }  // namespace dmise

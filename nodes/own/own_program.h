@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 #include <zmq.hpp>
 
@@ -52,6 +53,8 @@ class OwnProgram {
   };
   /// What it says of a tick; nothing after the stop.
   std::optional<Stepped> step(const v1::OwnNodeStep& step, const EnvironmentState& environment);
+  /// What it finds in a frame with these counts; nothing after the stop.
+  std::optional<v1::OwnNodeFound> find(const v1::OwnNodeFrame& frame, std::string_view counts);
 
  private:
   struct Answer {
@@ -59,9 +62,9 @@ class OwnProgram {
     std::vector<zmq::message_t> frames;
   };
   /// False while nobody is connected.
-  bool try_to_send(const v1::OwnNodeRequest& request, const std::string& more = {});
+  bool try_to_send(const v1::OwnNodeRequest& request, std::string_view more = {});
   /// Waits until the program is connected; false after the stop.
-  bool send(const v1::OwnNodeRequest& request, double within_s, const std::string& more = {});
+  bool send(const v1::OwnNodeRequest& request, double within_s, std::string_view more = {});
   /// Waits for an answer; nothing after the stop.
   std::optional<Answer> answer(double within_s);
   void wait_until(short ready, std::chrono::milliseconds at_most);

@@ -1,15 +1,18 @@
 // dmise-sensor-node: runs one sensor of a scenario: renders, detects, publishes.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/base/mapped_file.h"
 #include "core/base/memory.h"
+#include "core/base/paths.h"
 #include "core/config/scenario.h"
 #include "core/image/fits_file.h"
 #include "core/plan/cost_factors.h"
 #include "core/products/frame_file.h"
+#include "nodes/own/own_detector.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
@@ -64,6 +67,20 @@ void keep_frame(const dmise::FrameProducts& frame, const dmise::OutputConfig& ou
   }
 }
 
+/// Finds sources by a program of the user's, if the sensor has one.
+dmise::SourceFinder finder_of(const dmise::Scenario& scenario, const std::string& sensor,
+                              const std::string& out, bool allowed) {
+  const auto& detector = dmise::sensor_named(scenario, sensor).detector;
+  if (!detector) return {};
+  if (!allowed)
+    dmise::refuse_programs(
+        {*std::ranges::find(scenario.own_nodes, detector->node, &dmise::OwnNode::name)});
+  dmise::make_directories(out + "/logs");
+  return dmise::own_finder(scenario, sensor, out,
+                           {.note = [](const std::string& line) { spdlog::warn("{}", line); },
+                            .stop = &dmise::stop_signal()});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -71,6 +88,7 @@ int main(int argc, char** argv) {
   dmise::CommonFlags flags;
   std::string config, out = "out/node", digest, plan;
   int threads = 1;
+  bool allowed = false;
   CLI::App app(
       "Renders the frames of one sensor of a scenario, detects moving objects, publishes both.",
       "dmise-sensor-node");
@@ -81,6 +99,7 @@ int main(int argc, char** argv) {
   app.add_option("--digest", digest, "digest of the run, written into every frame");
   app.add_option("--plan", plan,
                  "run.json of a run: its frames' levels of effects instead of a plan");
+  app.add_flag("--allow-programs", allowed, "runs the detector that the scenario names");
   app.add_option("--threads", threads, "number of threads")->check(CLI::Range(1, 256));
   return dmise::run_program(app, flags, argc, argv, [&] {
     dmise::Scenario scenario = dmise::load_scenario(config);
@@ -89,7 +108,8 @@ int main(int argc, char** argv) {
     if (flags.name.empty()) throw dmise::ConfigError("--name: is required: the sensor's name");
     dmise::Threads pool(threads);
     const auto sensor =
-        dmise::make_sensor(scenario, flags.name, digest, out, dmise::load_stars(scenario), pool);
+        dmise::make_sensor(scenario, flags.name, digest, out, dmise::load_stars(scenario), pool,
+                           finder_of(scenario, flags.name, out, allowed));
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });

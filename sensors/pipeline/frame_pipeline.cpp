@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/stopwatch.h"
 #include "core/calibration/calibrated_detection.h"
@@ -51,11 +52,12 @@ struct FramePipeline::Work {
   ExpectedElectronImage light;  // kept between frames: new memory costs more than filling it
   CountImage used_counts;       // of an earlier frame: address space without memory behind it
   DetectorMemory detector_memory;
+  bool made_again = false;  // the frame at hand, for what it leaves to the next
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)),
         threads(t),
-        detector(settings.sensor.detect ? map : nullptr),
+        detector(detects_itself() ? map : nullptr),
         planned(settings.sensor) {
     const auto& grid = settings.sensor.camera.optics;
     light = room_for_image<ExpectedElectronImage>(grid);
@@ -71,6 +73,8 @@ struct FramePipeline::Work {
     planner.emplace(settings.sensor, stars ? stars->map().get() : nullptr,
                     settings.faintest_star_mag, settings.shapes.get());
   }
+
+  bool detects_itself() const { return settings.sensor.detect && !settings.sensor.detector; }
 
   void make_optics() {
     optics.emplace(planned, settings.seed, threads);
@@ -125,6 +129,7 @@ struct FramePipeline::Work {
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
+  std::optional<DetectionResult> search(const Frame& exposed, const FrameHeader& header);
   RadianceMap radiance_in(const PipelineSettings::Part& part, const FrameTimes& times,
                           const World& world);
   std::uint32_t first_frame_for(std::uint32_t frame) const;
@@ -187,8 +192,10 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world,
     Stopwatch timing(total_s);
     auto earlier = first_frame_for(times.frame);
     if (earlier < times.frame) work_->detector_memory.persistence = {};
+    work_->made_again = true;
     for (; earlier < times.frame; ++earlier)
       work_->give_back(make(frame_times(work_->settings.sensor, earlier)).counts);
+    work_->made_again = false;
     frame = make(times);
   }
   frame.total_s = total_s;
@@ -196,6 +203,18 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world,
 }
 
 void FramePipeline::give_back(CountImage counts) { work_->give_back(std::move(counts)); }
+
+/// What the user's detector finds in a frame, or no search; nothing if the run is being stopped.
+std::optional<DetectionResult> FramePipeline::Work::search(const Frame& exposed,
+                                                           const FrameHeader& header) {
+  if (!settings.sensor.detect || made_again || header.shutter_closed())
+    return without_detection(exposed.counts, exposed.header);
+  if (!settings.finder)
+    throw ConfigError(settings.sensor.detector->where + ": this command starts no programs");
+  auto found = settings.finder(exposed.counts, header);
+  if (!found) return std::nullopt;
+  return described(std::move(*found), exposed.counts, exposed.header, threads);
+}
 
 FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& world) {
   FrameProducts frame;
@@ -241,14 +260,18 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   expose(
       light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
       {.memory = &detector_memory, .flags = settings.output.saturation ? &frame.flags : nullptr});
-  if (sensor.detect) release_pages(bytes_of(light));  // the search needs as much
+  if (detects_itself()) release_pages(bytes_of(light));  // the search needs as much
 
   DetectionResult result;
   {
     Stopwatch timing(frame.detection_s);
     Frame exposed{std::move(frame.counts), as_in_file(frame.header)};
-    result = sensor.detect ? detector.detect(exposed, threads).detection
-                           : without_detection(exposed.counts, exposed.header);
+    if (detects_itself())
+      result = detector.detect(exposed, threads).detection;
+    else if (auto found = search(exposed, frame.header))
+      result = std::move(*found);
+    else
+      frame.stopped = true;
     frame.counts = std::move(exposed.counts);
   }
   release_stars();

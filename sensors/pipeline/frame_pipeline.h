@@ -5,6 +5,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/config/scenario.h"
+#include "core/detection/described_sources.h"
 #include "core/plan/planner.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
@@ -35,6 +36,7 @@ struct FrameProducts {
   EffectPlan plan;    // of this exposure; no effects in it: unplanned
   EffectTimes times;  // wall clock, never part of a repeatable product
   double detection_s = 0.0, total_s = 0.0;
+  bool stopped = false;  // while it was searched: it has no report
 };
 
 /// Settings that all frames of a sensor share.
@@ -57,6 +59,7 @@ struct PipelineSettings {
   std::vector<Part> radiance_parts;
   /// Takes the light of each object alone; needs the noise among the planes of `output`.
   ObjectLightTaker object_light;
+  SourceFinder finder = {};  // of a sensor with a detector of the user's
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane

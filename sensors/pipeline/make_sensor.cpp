@@ -58,11 +58,13 @@ RunGrid run_grid(const Scenario& scenario) {
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
                                              const std::string& digest,
                                              const std::string& directory,
-                                             std::shared_ptr<const StarMap> stars,
-                                             Threads& threads) {
+                                             std::shared_ptr<const StarMap> stars, Threads& threads,
+                                             SourceFinder finder) {
+  PipelineSettings settings = sensor_settings(scenario, name, digest);
+  settings.finder = std::move(finder);
   return std::make_unique<SensorEvaluator>(
-      sensor_settings(scenario, name, digest), run_grid(scenario), scenario.output,
-      std::move(stars), directory.empty() ? "" : directory + "/" + name, threads);
+      settings, run_grid(scenario), scenario.output, std::move(stars),
+      directory.empty() ? "" : directory + "/" + name, threads);
 }
 
 }  // namespace dmise

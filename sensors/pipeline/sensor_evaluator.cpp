@@ -142,6 +142,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
       world_.follow(*std::ranges::find(tasks_, task, &std::shared_ptr<const Task>::get));
     }
     FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);
+    if (frame.stopped) break;
     if (writer_) writer_->write(frame);
     made_(frame);
     pipeline_.give_back(std::move(frame.counts));

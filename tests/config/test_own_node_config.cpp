@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
 #include "core/config/schema.h"
 #include "core/config/yaml_reader.h"
@@ -90,7 +91,8 @@ TEST(OwnNodeConfig, ItsFilesAreProgramAndArguments) {
 
 class NodesOfObjects : public testing::Test {
  protected:
-  static Scenario load(const std::string& objects, const std::string& nodes) {
+  static Scenario load(const std::string& objects, const std::string& nodes,
+                       const std::string& of_sensor = "") {
     return read_scenario(YamlValue::parse(
         "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 30, tick_s: 5}\nobjects:\n" +
             objects + "nodes: " + nodes +
@@ -98,7 +100,8 @@ class NodesOfObjects : public testing::Test {
             "camera: {optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: 0.1, "
             "aperture_m: 0.05}, detector: {full_well_e: 20000, gain_e_per_dn: 1}, band: "
             "{centre_m: 0.55e-6, width_m: 0.1e-6}}, pointing: zenith, exposure_s: 5, cadence_s: "
-            "10}\n",
+            "10" +
+            of_sensor + "}\n",
         "s.yaml"));
   }
 };
@@ -134,6 +137,49 @@ TEST_F(NodesOfObjects, NamesMustMatch) {
               HasSubstr("nodes[0].name: another node has this name, got eye"));
   EXPECT_THAT(complaint("  - {name: a, motion: {node: broker}}\n", "[{name: broker, run: [sh]}]"),
               HasSubstr("another node has this name"));
+}
+
+TEST_F(NodesOfObjects, ANodeMayDetectInTheFramesOfASensor) {
+  const std::string object = "  - {name: a, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n";
+  const Scenario own = load(object, "[]");
+  EXPECT_TRUE(own.sensors[0].detect);
+  EXPECT_FALSE(own.sensors[0].detector);
+  const Scenario scenario =
+      load(object, "[{name: finder, run: [sh]}]", ", detection: {node: finder}");
+  EXPECT_TRUE(scenario.sensors[0].detect);
+  EXPECT_EQ(scenario.sensors[0].detector->node, "finder");
+  EXPECT_TRUE(scenario.own_nodes[0].detects);
+  EXPECT_NE(physics_json(scenario), physics_json(own));
+  EXPECT_FALSE(load(object, "[]", ", detection: off").sensors[0].detect);
+  // It runs in the sensor's process, and is no node of the run.
+  EXPECT_FALSE(kind_of_node("finder", scenario));
+  for (const std::string& node : nodes_of(scenario)) EXPECT_NE(node, "finder");
+  EXPECT_TRUE(starts_program(*kind_of_node("eye", scenario), "eye", scenario));
+  EXPECT_FALSE(starts_program(*kind_of_node("eye", own), "eye", own));
+}
+
+TEST_F(NodesOfObjects, ADetectorMustBeANodeThatDoesNothingElse) {
+  const auto complaint = [](const std::string& motion, const std::string& node,
+                            const std::string& detection) {
+    return config_error_of([&] {
+      load("  - {name: a, motion: {" + motion + "}}\n", "[{name: finder, " + node + "}]",
+           ", detection: " + detection);
+    });
+  };
+  const std::string fixed = "fixed: {gcrs_m: [7e6, 0, 0]}";
+  EXPECT_THAT(complaint(fixed, "run: [sh]", "{node: findr}"),
+              testing::AllOf(HasSubstr("sensors[0].detection.node: no node of `nodes` has this"),
+                             HasSubstr("did you mean finder?, got findr")));
+  EXPECT_THAT(complaint("node: finder", "run: [sh]", "{node: finder}"),
+              HasSubstr("nodes[0]: moves or turns objects and detects"));
+  EXPECT_THAT(complaint(fixed, "elsewhere: on", "{node: finder}"),
+              HasSubstr("sensors[0].detection.node: its node is elsewhere"));
+  EXPECT_THAT(complaint(fixed, "run: [sh], period_ticks: 2", "{node: finder}"),
+              HasSubstr("nodes[0].period_ticks: a detector is asked for each frame: must be 1"));
+  EXPECT_THAT(complaint(fixed, "run: [sh]", "on"), HasSubstr("no sensor detects by it"));
+  EXPECT_THAT(complaint(fixed, "run: [sh]", "{}"), HasSubstr("sensors[0].detection"));
+  EXPECT_THAT(complaint(fixed, "run: [sh]", "{nod: finder}"), HasSubstr("did you mean node?"));
+  EXPECT_THAT(complaint(fixed, "run: [sh]", "perhaps"), HasSubstr("sensors[0].detection"));
 }
 
 }  // namespace

@@ -79,6 +79,16 @@ TEST(FitsFile, HeaderInMemoryIsTheHeaderOfTheFile) {
   EXPECT_EQ(frame.header.seed, header.seed);
 }
 
+TEST(FitsFile, BeginsWithItsCards) {
+  const auto counts = sample_counts();
+  std::string begin;
+  for (const std::string& card : frame_file_cards(counts, sample_header())) {
+    EXPECT_EQ(card.size(), 80u) << card;
+    begin += card;
+  }
+  EXPECT_THAT(encode_frame(counts, sample_header()), testing::StartsWith(begin + "END     "));
+}
+
 TEST(FitsFile, SpaceSensorHasNoSite) {
   auto header = sample_header();
   header.site.reset();

@@ -85,6 +85,33 @@ TEST(FramePipeline, WithoutDetectionTheFrameIsTheSameAndItsReportSaysWhatTheHead
   EXPECT_NE(physics_json(with.scenario), physics_json(without.scenario));
 }
 
+TEST(FramePipeline, AFinderTakesThePlaceOfOurDetector) {
+  test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n", elements);
+  SensorConfig config = stage.scenario.sensors[0];
+  config.detector = {.node = "finder", .where = "s.yaml:1:1: sensors[0].detection.node"};
+  const auto made = [&](SourceFinder finder) {
+    FramePipeline pipeline({.sensor = config,
+                            .clock = make_clock(stage.scenario),
+                            .digest = "test",
+                            .finder = std::move(finder)},
+                           stage.stars, stage.threads);
+    return pipeline.run(frame_times(config, 2), stage.world);
+  };
+  std::string told;
+  const FrameProducts frame = made([&](const CountImage& counts, const FrameHeader& header) {
+    told = encode_frame(counts, header);
+    return std::vector{
+        MeasuredSource{.centroid = {{30, 40}, {0.1, 0, 0.1}}, .light_e = 1e4, .snr = 9}};
+  });
+  EXPECT_TRUE(told == encode_frame(frame.counts, frame.header)) << "it is told what the file has";
+  ASSERT_EQ(frame.detections.size(), 1u);
+  EXPECT_EQ(frame.detections[0].id, "watch/2/0");
+  EXPECT_EQ(frame.report.detections, 1u);
+  EXPECT_FALSE(frame.stopped || frame.report.detection_off);
+  EXPECT_TRUE(made([](const auto&, const auto&) { return std::nullopt; }).stopped);
+  EXPECT_THROW(made({}), ConfigError) << "commands that start no programs";
+}
+
 TEST(FramePipeline, BytesDoNotDependOnThreads) {
   test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n50.2,-5.9,4\n48.9,-6.3,8\n",
                     elements);

@@ -1,4 +1,4 @@
-"""Models of one's own in a run: `actor` marks what moves objects, `serve` runs it (docs/howto/plug-in-a-model.md).
+"""Models of one's own in a run: `actor` marks what moves objects, `serve` runs it or a detector (docs/howto/plug-in-a-model.md).
 
     @dmise.actor("inspector")
     def orbit(t_s, world, options):
@@ -22,14 +22,15 @@ from typing import Any
 import numpy as np
 import zmq
 
-from . import protocol
+from . import own_detector, protocol
 from .convert import record_of, start_of
+from .own_detector import Detector
 from .records import ArrayLike, Floats
 from .world import EnvironmentState
 
 ADDRESS_VARIABLE = "DMISE_OWN_NODE"
 NO_STATE = 18  # code of an object that its node gives no state
-LONGEST_REQUEST_BYTES = 64 << 20
+LONGEST_REQUEST_BYTES = 1 << 30  # frames of 500 Mpx
 LINGER_MS = 1000  # for the last answer
 
 
@@ -85,8 +86,8 @@ def actor(*names: str) -> Callable[[Callable[..., Any]], Actor]:
     return lambda model: Actor(model, names)
 
 
-def serve(model: Actor) -> None:
-    """Says what `model` says, tick by tick, to the run that has started this program. Returns at the end of the run."""
+def serve(model: Actor | Detector) -> None:
+    """Says what `model` says, tick by tick or frame by frame, to the run that has started this program, until the run ends."""
     address = os.environ.get(ADDRESS_VARIABLE)
     if not address:
         sys.exit(f"{ADDRESS_VARIABLE} is not set: this program is started by a scenario with "
@@ -102,8 +103,8 @@ class _Failed(Exception):
 
 
 class _Conversation:
-    def __init__(self, address: str, actor: Actor) -> None:
-        self._actor = actor
+    def __init__(self, address: str, served: Actor | Detector) -> None:
+        self._served = served
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.PAIR)
         self._socket.maxmsgsize = LONGEST_REQUEST_BYTES
@@ -141,6 +142,8 @@ class _Conversation:
         try:
             if request.HasField("begin"):
                 frames = self._begin(request.begin)
+            elif request.HasField("frame"):
+                frames = self._search(request.frame, more[0])
             else:
                 frames = self._step(request.step, more[0])
         except Exception as error:
@@ -172,21 +175,37 @@ class _Conversation:
         self._start = start_of(begin.start_utc)
         self._objects = [each.name for each in begin.objects]
         self._options = json.loads(begin.options_json)
-        if self._actor.names and sorted(self._actor.names) != sorted(self._objects):
-            raise ValueError(f"the program moves {', '.join(self._actor.names)}, the scenario has it move "
-                             f"{', '.join(self._objects)}")
-        self._model = self._actor.make()
+        self._require_task()
+        self._model = self._served.make()
         if begin.HasField("checkpoint"):
             self._model.restore(begin.checkpoint)
         return [protocol.OwnNodeAnswer(ready=protocol.OwnNodeReady()).SerializeToString()]
+
+    def _require_task(self) -> None:
+        """What the program does is what the scenario has it do."""
+        served = self._served
+        if isinstance(served, Detector):
+            if not self._begun.HasField("sensor"):
+                raise ValueError(f"the program detects, the scenario has it move {', '.join(self._objects)}")
+        elif self._begun.HasField("sensor"):
+            raise ValueError(f"the program moves objects, the scenario has it detect in the frames of {self._begun.sensor}")
+        elif served.names and sorted(served.names) != sorted(self._objects):
+            raise ValueError(f"the program moves {', '.join(served.names)}, the scenario has it move "
+                             f"{', '.join(self._objects)}")
+
+    def _search(self, frame: Any, counts: bytes) -> list[bytes]:
+        said = self._said_by(own_detector.frame_of(frame, counts, self._begun.node), self._options)
+        return [protocol.OwnNodeAnswer(found=own_detector.packed(said)).SerializeToString()]
+
+    def _said_by(self, *arguments: Any) -> Any:
+        said = self._model(*arguments)
+        return asyncio.run(_result_of(said)) if inspect.isawaitable(said) else said
 
     def _step(self, step: Any, environment: bytes) -> list[bytes]:
         world = World(step.tick, step.time_ns,
                       record_of(protocol.EnvironmentState.FromString(environment), self._start),
                       self._begun.node, self._objects, self._begun.seed)
-        said = self._model(step.time_ns / 1e9, world, self._options)
-        if inspect.isawaitable(said):
-            said = asyncio.run(_result_of(said))
+        said = self._said_by(step.time_ns / 1e9, world, self._options)
         stepped = protocol.OwnNodeStepped()
         if step.give_checkpoint and hasattr(self._model, "checkpoint"):
             stepped.checkpoint = self._model.checkpoint()

@@ -1,0 +1,178 @@
+"""A detector of one's own in a run: `detector` marks it, `serve` runs it (docs/howto/plug-in-a-model.md).
+
+    @dmise.detector
+    def find(frame, options):
+        return [dmise.Found(x_px=.., y_px=.., sigma_px=.., flux_e=.., snr=..)]
+    dmise.serve(find)
+"""
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import protocol
+
+CardValue = bool | int | float | str
+
+
+@dataclass
+class Found:
+    """One source in a frame; or n, if `x_px` and others are arrays. (0, 0) is the centre of the first pixel.
+
+    x_px, y_px      centroid of light
+    sigma_px        its standard error in x and y; or
+    covariance_px2  var x, cov xy, var y (3, or 3 x n)
+    flux_e          light above the background [e-]
+    snr             flux_e over its standard error
+    end1_px         x, y (2, or 2 x n) of one end of a streak, end2_px of the other
+    end_sigma_px    their standard error, that of the centroid if it is left out; or
+    end1_covariance_px2, end2_covariance_px2
+    """
+    x_px: Any
+    y_px: Any
+    flux_e: Any
+    snr: Any
+    sigma_px: Any = None
+    covariance_px2: Any = None
+    end1_px: Any = None
+    end2_px: Any = None
+    end_sigma_px: Any = None
+    end1_covariance_px2: Any = None
+    end2_covariance_px2: Any = None
+
+
+@dataclass
+class SensorFrame:
+    """What a detector is told: a frame, as it is in its file. `counts`: rows x columns [DN]."""
+    sensor: str
+    number: int  # from 1
+    tick: int
+    counts: npt.NDArray[np.uint16]
+    header: dict[str, CardValue]  # of the FITS file
+    node: str = ""
+
+    @property
+    def gain_e_per_dn(self) -> float:
+        return float(self.header["GAIN"])
+
+    @property
+    def exposure_s(self) -> float:
+        return float(self.header["EXPTIME"])
+
+
+class Detector:
+    """A function `f(frame, options)` that returns what is in a frame, or a class whose instances are called so."""
+
+    def __init__(self, model: Callable[..., Any]) -> None:
+        self._model = model
+
+    def make(self) -> Any:
+        return self._model() if isinstance(self._model, type) else self._model
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._model(*arguments)
+
+
+def detector(model: Callable[..., Any]) -> Detector:
+    """Marks a function or class that detects in the frames of a sensor."""
+    return Detector(model)
+
+
+def frame_of(frame: Any, counts: bytes, node: str) -> SensorFrame:
+    """The frame of a request."""
+    pixels = np.frombuffer(counts, "<u2").reshape(frame.rows, frame.columns)
+    return SensorFrame(frame.sensor, frame.frame, frame.tick, pixels.astype(np.uint16, copy=False),
+                       dict(_value_of(card) for card in frame.cards if card[8:10] == "= "), node)
+
+
+def _value_of(card: str) -> tuple[str, CardValue]:
+    key, text = card[:8].strip(), card[10:].strip()
+    if quoted := re.match("'((?:[^']|'')*)'", text):
+        return key, quoted[1].replace("''", "'").rstrip()
+    word = text.split("/")[0].strip()
+    if word in ("T", "F"):
+        return key, word == "T"
+    try:
+        return key, int(word)
+    except ValueError:
+        return key, float(word)
+
+
+def packed(said: Any) -> Any:
+    """What a detector says, as OwnNodeFound."""
+    each = [said] if isinstance(said, Found) else said
+    if isinstance(each, (str, bytes)) or not isinstance(each, Iterable):
+        raise TypeError(f"a detector returns dmise.Found, or a list of them, got {type(said).__name__}")
+    found = protocol.OwnNodeFound()
+    for one in each:
+        if not isinstance(one, Found):
+            raise TypeError(f"a detector returns dmise.Found, or a list of them, got one {type(one).__name__}")
+        for source in _one_by_one(one):
+            _add(found, source)
+    return found
+
+
+def _one_by_one(found: Found) -> Iterable[Found]:
+    """The sources of one whose numbers are arrays, if they are."""
+    if np.ndim(found.x_px) == 0:
+        return [found]
+    count = len(found.x_px)
+    columns: dict[str, Sequence[Any]] = {}
+    for each in fields(Found):
+        value = getattr(found, each.name)
+        if value is None or np.ndim(value) == 0:
+            columns[each.name] = [value] * count
+            continue
+        array = np.asarray(value, np.float64)
+        if array.shape[-1] != count:
+            raise ValueError(f"{each.name}: must have {count} columns, as x_px has, got the shape {array.shape}")
+        columns[each.name] = list(array.T)
+    return [Found(**{name: column[i] for name, column in columns.items()}) for i in range(count)]
+
+
+def _add(found: Any, source: Found) -> None:
+    added = found.sources.add(flux_e=_number(source, "flux_e"), snr=_number(source, "snr"))
+    covariance = _covariance(source, "covariance_px2", "sigma_px")
+    if covariance is None:
+        raise ValueError("sigma_px or covariance_px2: is needed")
+    _set(added.centroid, [_number(source, "x_px"), _number(source, "y_px")], covariance)
+    if (source.end1_px is None) != (source.end2_px is None):
+        raise ValueError("end1_px and end2_px: a streak has both")
+    for name, end in (("end1", added.end1), ("end2", added.end2)):
+        if getattr(source, f"{name}_px") is None:
+            continue
+        of_end = _covariance(source, f"{name}_covariance_px2", "end_sigma_px")
+        _set(end, _numbers(source, f"{name}_px", 2), covariance if of_end is None else of_end)
+
+
+def _set(place: Any, at: list[float], covariance_px2: list[float]) -> None:
+    place.x_px, place.y_px = at
+    place.var_x_px2, place.cov_xy_px2, place.var_y_px2 = covariance_px2
+
+
+def _covariance(source: Found, name: str, sigma_name: str) -> list[float] | None:
+    if getattr(source, name) is not None:
+        return _numbers(source, name, 3)
+    if getattr(source, sigma_name) is None:
+        return None
+    variance = _number(source, sigma_name)**2
+    return [variance, 0.0, variance]
+
+
+def _number(source: Found, name: str) -> float:
+    try:
+        return float(getattr(source, name))
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: must be a number, got {getattr(source, name)!r}") from None
+
+
+def _numbers(source: Found, name: str, count: int) -> list[float]:
+    numbers = np.asarray(getattr(source, name), np.float64)
+    if numbers.shape != (count,):
+        raise ValueError(f"{name}: must have the shape {(count,)}, got {numbers.shape}")
+    return [float(number) for number in numbers]
