@@ -34,6 +34,7 @@
 #include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
+#include "nodes/runtime/process/last_line.h"
 #include "nodes/runtime/program/command_line.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"

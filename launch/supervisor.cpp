@@ -7,12 +7,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <string_view>
 #include <thread>
 
 #include "core/base/error.h"
+#include "nodes/runtime/process/last_line.h"
 
 namespace dmise {
 namespace {
@@ -94,19 +92,6 @@ std::string end_of(const Child& child) {
   const int code = child.exit_code.value_or(0);
   if (code > killed_by) return child.name + " was killed (" + strsignal(code - killed_by) + ")";
   return child.name + ": " + last_line(child.log_path);
-}
-
-std::string last_line(const std::string& path) {
-  std::ifstream file(path);
-  std::string line, last;
-  while (std::getline(file, line))
-    if (!line.empty()) last = line;
-  if (last.starts_with('{'))  // of a log in JSON
-    if (const auto event = nlohmann::json::parse(last, nullptr, false); event.is_object())
-      return event.value("text", last);
-  constexpr std::string_view before_message = " error: ";  // follows time, node and level
-  const auto at = last.find(before_message);
-  return at == std::string::npos ? last : last.substr(at + before_message.size());
 }
 
 std::string program_directory() {

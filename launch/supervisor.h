@@ -57,9 +57,6 @@ constexpr int killed_by = 128;  // codes above are signals
 /// How a child has ended: "beta was killed (Killed)", or "beta: " and its last line.
 std::string end_of(const Child& child);
 
-/// The message of the last non-empty line of a log.
-std::string last_line(const std::string& path);
-
 /// Directory of the running program.
 std::string program_directory();
 

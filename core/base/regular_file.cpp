@@ -54,7 +54,12 @@ int open_regular_file(const std::string& path) {
 
 int open_own_file(const char* path, int flags, mode_t mode) {
   struct stat info {};
-  if (lstat(path, &info) == 0 && !S_ISDIR(info.st_mode) &&
+  const bool there = lstat(path, &info) == 0;
+  if (there && (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode))) {
+    errno = EPERM;
+    return -1;
+  }
+  if (there && !S_ISDIR(info.st_mode) &&
       (!S_ISREG(info.st_mode) || ((flags & O_TRUNC) != 0 && info.st_nlink > 1)))
     unlink(path);
   return open(path, flags | O_CREAT | O_NOFOLLOW | O_NOCTTY, mode);

@@ -11,8 +11,8 @@ namespace dmise {
 int open_regular_file(const std::string& path);
 
 /// Opens a file to write under a name that is the program's own: creates it, or opens the regular
-/// file there. A link, FIFO or device in its place is removed and not followed, and so is, with
-/// O_TRUNC, a file that has other names. Returns -1 and sets errno if it can't be opened. Safe
+/// file there. A link or FIFO in its place is removed and not followed, and so is, with O_TRUNC, a
+/// file that has other names. Returns -1 and sets errno if it can't be opened, or is a device. Safe
 /// between fork and exec.
 int open_own_file(const char* path, int flags, mode_t mode = 0644);
 

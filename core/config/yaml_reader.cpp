@@ -182,7 +182,11 @@ bool YamlValue::flag() const {
     if (s == "on" || s == "true" || s == "yes") return true;
     if (s == "off" || s == "false" || s == "no") return false;
   }
-  fail("must be on or off" + did_you_mean(is_scalar() ? text() : "", {"on", "off"}));
+  const bool or_map = forms_ && std::ranges::any_of(*forms_, [](const Form& form) {
+                        return form.kind == Form::Kind::map;
+                      });
+  fail((or_map ? "must be on, off or a mapping" : "must be on or off") +
+       did_you_mean(is_scalar() ? text() : "", {"on", "off"}));
 }
 
 std::string YamlValue::choice() const {

@@ -86,7 +86,13 @@ double cubic_error_m(const std::array<const ObjectStates*, 3>& three, std::size_
   const double span_s = (last->time - first->time).seconds();
   const Vec<Gcrs> cubic = interpolate_cubic(0.5, span_s, first->position(i), first->slope(i),
                                             last->position(i), last->slope(i));
-  return norm(cubic - middle->position(i)) / 16.0;
+  const double smooth_m = norm(cubic - middle->position(i)) / 16.0;
+  // A jump of the velocity at the middle is twice what the cubic's slope is off there, and bends
+  // the interval before it by 4/27 of the way that it makes in one step.
+  const Vec<Gcrs> slope = (last->position(i) - first->position(i)) * (1.5 / span_s) -
+                          (first->slope(i) + last->slope(i)) * 0.25;
+  const double jump_m_per_s = 2.0 * norm(slope - middle->slope(i));
+  return std::max(smooth_m, 4.0 / 27.0 * jump_m_per_s * 0.5 * span_s);
 }
 
 }  // namespace dmise

@@ -12,8 +12,8 @@ ObjectStates joined_states(const ObjectStates& before, const ObjectStates& after
                            SimTime time);
 
 /// Error [m] of the cubic between two neighbours of three equidistant states, for object `i`: a
-/// 16th of what the cubic over both intervals is off in the middle, as for a smooth path. Infinite
-/// if one has no state.
+/// 16th of what the cubic over both intervals is off in the middle, as for a smooth path, or what a
+/// jump of the velocity there makes of it. Infinite if one has no state.
 double cubic_error_m(const std::array<const ObjectStates*, 3>& three, std::size_t i);
 
 }  // namespace dmise

@@ -10,8 +10,9 @@
 namespace dmise {
 namespace {
 
-constexpr Tick checkpoint_every = 64;      // calls
-constexpr std::size_t calls_held = 3;      // for joining two, and for the error between three
+constexpr Tick checkpoint_every = 64;  // calls
+constexpr std::size_t calls_held = 3;  // for joining two, and for the error between three
+constexpr double least_earth_radius_m = 6356752.3;  // WGS 84, at the poles
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
 
 bool is_turned_by(const OwnNode& node, const OwnObject& object) {
@@ -47,6 +48,7 @@ OwnActor::OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock,
     objects_.push_back(&object);
   }
   warned_.resize(objects_.size());
+  underground_.resize(objects_.size());
 }
 
 std::vector<std::string> OwnActor::produces() const { return {actor_prefix + node_.name}; }
@@ -94,6 +96,7 @@ bool OwnActor::ask() {
   auto stepped = program_->step(step, environment_at(clock_, tick, scenario_.time_of(tick)));
   if (!stepped) return false;
   check(stepped->states);
+  look_at_places(stepped->states);
   require_same(stepped->digest);
   if (stepped->checkpoint) checkpoint_ = {next_call_, std::move(*stepped->checkpoint)};
   ++next_call_;
@@ -137,6 +140,20 @@ void OwnActor::check(const ObjectStates& states) const {
   if (states.attitude_object != turned_)
     throw Error("attitude_object: must be " + list_text(turned_) +
                 ", the objects that it turns, got " + list_text(states.attitude_object));
+}
+
+/// Warns of objects that are under the ground, which are not in the scene.
+void OwnActor::look_at_places(const ObjectStates& states) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (underground_[i] || states.code[i] != 0 || !is_moved_by(node_, *objects_[i])) continue;
+    const double radius_m = norm(states.position(i));
+    if (radius_m >= least_earth_radius_m) continue;
+    underground_[i] = true;
+    settings_.note(node_.name + ": " + objects_[i]->name +
+                   formatted(" is not in the scene at tick %ld: it is %.6g m from the Earth's "
+                             "centre, under the ground",
+                             long(states.tick), radius_m));
+  }
 }
 
 /// A program that was started again repeats what it said.

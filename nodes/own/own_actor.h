@@ -37,6 +37,7 @@ class OwnActor : public Actor {
   void check(const ObjectStates& states) const;
   void require_same(std::uint64_t digest);
   void look_at_errors();
+  void look_at_places(const ObjectStates& states);
   v1::OwnNodeBegin begin() const;
   const ObjectStates& states_of(Tick call) const;
   Tick tick_of(Tick call) const { return call * node_.period_ticks; }
@@ -53,7 +54,8 @@ class OwnActor : public Actor {
   std::optional<Checkpoint> checkpoint_;
   std::deque<ObjectStates> held_;  // of the last calls
   OwnRestarts restarts_;
-  std::vector<bool> warned_;  // of objects that are not interpolated well
+  std::vector<bool> warned_;       // of objects that are not interpolated well
+  std::vector<bool> underground_;  // those that were told to be
   std::atomic<std::uint64_t> steps_{0};
 };
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/base/printable.h"
+#include "nodes/runtime/process/last_line.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/process/spawn.h"
@@ -41,6 +42,15 @@ std::string end_text(int status) {
 }
 
 }  // namespace
+
+/// What an ended program has said last, and where.
+std::string OwnProgram::last_words(int status) const {
+  const bool forgot = endpoint_ && WEXITSTATUS(status) == 0;
+  const std::string question = forgot ? ": does it call dmise.serve?" : "";
+  if (settings_.log_path.empty()) return question;
+  const std::string line = printable(last_line(settings_.log_path));
+  return question + (line.empty() ? "" : ": " + line) + " (" + settings_.log_path + ")";
+}
 
 OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log)
     : settings_(settings),
@@ -144,7 +154,7 @@ void OwnProgram::require_alive() {
   wait_until(ZMQ_POLLIN, last_words_within);
   receive();  // throws if it said why
   if (WIFSIGNALED(status)) throw ProgramLost(end_text(status));
-  throw Error(end_text(status) + (endpoint_ ? " before it was ready" : ""));
+  throw Error(end_text(status) + (endpoint_ ? " before it was ready" : "") + last_words(status));
 }
 
 std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {

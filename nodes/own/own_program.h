@@ -72,6 +72,7 @@ class OwnProgram {
   std::optional<Answer> receive();
   bool stopped() const { return settings_.stop && settings_.stop->is_set(); }
   void require_alive();
+  std::string last_words(int status) const;
   void end(int signal);
 
   ProgramSettings settings_;

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -39,6 +40,13 @@ TEST_F(TextFile, IsWrittenInThePlaceOfALinkWhoseTargetStays) {
   EXPECT_EQ(read_text_file(path("target")), "theirs");
   EXPECT_EQ(read_text_file(path("a")), "ours");
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path("a"))));
+}
+
+TEST_F(TextFile, IsNeverWrittenInThePlaceOfADevice) {
+  const std::string device = path("device");
+  if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "needs root";
+  EXPECT_EQ(open_own_file(device.c_str(), O_WRONLY | O_TRUNC), -1);
+  EXPECT_TRUE(fs::is_character_file(fs::symlink_status(device)));
 }
 
 TEST_F(TextFile, OfTheProgramItselfIsNoLinkNorFifo) {

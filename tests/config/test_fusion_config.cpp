@@ -118,7 +118,8 @@ TEST(CuedPointing, ThatIsOffIsNone) {
     EXPECT_TRUE(
         std::holds_alternative<PointHorizon>(pointing(", azimuth_deg: 1, elevation_deg: 2")));
   }
-  EXPECT_NE(refusal(scenario_text("{cued: 5}")).find("pointing.cued: must be on or off, got 5"),
+  EXPECT_NE(refusal(scenario_text("{cued: 5}"))
+                .find("pointing.cued: must be on, off or a mapping, got 5"),
             std::string::npos);
 }
 

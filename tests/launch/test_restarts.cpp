@@ -19,7 +19,7 @@ class RestartsTest : public testing::Test {
                     {"/bin/sh", "-c",
                      "if [ -e " + mark + " ]; then exit " + second_ends_with + "; fi; touch " +
                          mark + "; kill -9 $$"},
-                    "/dev/null");
+                    mark + ".log");
     wait_for_its_end();
     status.phase = Phase::connecting;
     status.nodes = {{.name = "host-1"}};  // the master has not missed it
@@ -32,7 +32,10 @@ class RestartsTest : public testing::Test {
       std::this_thread::yield();
     ASSERT_FALSE(processes.poll());
   }
-  void TearDown() override { std::filesystem::remove(mark); }
+  void TearDown() override {
+    std::filesystem::remove(mark);
+    std::filesystem::remove(mark + ".log");
+  }
 
   const std::string mark = testing::TempDir() + "/restarts-" + std::to_string(getpid());
   NetworkConfig network{.on_silent_node = OnSilentNode::restart, .join_within_s = 60.0};

@@ -56,5 +56,21 @@ TEST(JoinedStates, TheErrorIsThatOfTheClosedForm) {
   EXPECT_TRUE(std::isinf(cubic_error_m({&a, &b, &c}, 1)));
 }
 
+// A burn at the middle state: the cubic before it bends towards the velocity after it.
+TEST(JoinedStates, TheErrorOfAJumpOfTheVelocityIsThatOfTheCubicBeforeIt) {
+  constexpr double jump_m_per_s = 50.0;
+  ObjectStates three[] = {on_circle(0, 0.0), on_circle(1, 1.0), on_circle(2, 2.0)};
+  three[1].slope_m_per_s[4] += jump_m_per_s;  // north, of the first of two objects
+  three[2].slope_m_per_s[4] += jump_m_per_s;
+  three[2].position_m[4] += jump_m_per_s * 1.0;
+  double worst_m = 0.0;
+  for (double s = 0.02; s < 1.0; s += 0.02) {
+    const ObjectStates joined = joined_states(three[0], three[1], 0, sim_seconds(s));
+    worst_m = std::max(worst_m, norm(joined.position(0) - on_circle(0, s).position(0)));
+  }
+  EXPECT_NEAR(worst_m, 7.4, 0.1);
+  EXPECT_NEAR(cubic_error_m({&three[0], &three[1], &three[2]}, 0), worst_m, 0.02 * worst_m);
+}
+
 }  // namespace
 }  // namespace dmise

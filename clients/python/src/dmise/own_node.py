@@ -88,6 +88,8 @@ def actor(*names: str) -> Callable[[Callable[..., Any]], Actor]:
 
 def serve(model: Actor | Detector) -> None:
     """Says what `model` says, tick by tick or frame by frame, to the run that has started this program, until the run ends."""
+    if not isinstance(model, Actor | Detector):
+        raise TypeError(f"serve: takes what @dmise.actor(..) or @dmise.detector marks, got {type(model).__name__}")
     address = os.environ.get(ADDRESS_VARIABLE)
     if not address:
         sys.exit(f"{ADDRESS_VARIABLE} is not set: this program is started by a scenario with "
@@ -263,8 +265,10 @@ def _of_each(said: Any, names: list[str]) -> list[State | None]:
     if isinstance(said, Mapping):
         if unknown := set(said) - set(names):
             raise ValueError(f"{min(unknown)}: the node has no such object, only {', '.join(names)}")
-        return [said.get(name) for name in names]
+        said = [said.get(name) for name in names]
     each = [said] if said is None else list(said)
+    if wrong := [one for one in each if not (one is None or isinstance(one, State))]:
+        raise TypeError(f"a dmise.State is needed of each object, got {type(wrong[0]).__name__} in {type(said).__name__}")
     if len(each) != len(names):
         raise ValueError(f"a state is needed of each of {len(names)} objects, got {len(each)}")
     return each
