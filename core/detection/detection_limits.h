@@ -11,7 +11,7 @@ inline constexpr double least_light_snr =
     3.0;  // likewise where the flux has the errors of the ends
 // Of a streak: minimum SNR with errors of its ends and of columns, and the matched filter's that no
 // noise reaches.
-inline constexpr double least_published_snr = 5.0, sure_snr = 15.0;
+inline constexpr double least_published_snr = 4.0, sure_snr = 15.0;
 // Minimum difference between a source's trail and a star's.
 inline constexpr double least_difference_px = 1.5;
 // Minimum SNR of a streak against the scatter of stars beside it.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int fit_points = 24, check_points = 37, table_points = 33;
 // Allowances for errors between the sampled points.
-constexpr double between_points = 1.3, between_cells = 1.1;
+constexpr double between_points = 1.3, between_cells = 1.25;
 constexpr double good_px = 0.08;  // of a WCS as a whole
 constexpr double good_low_order_px = 0.01;
 constexpr int highest_order = 9;  // of SIP, by its convention
