@@ -13,6 +13,7 @@
 #include "core/config/distribution.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_limits.h"
+#include "core/config/yaml_syntax.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
