@@ -41,7 +41,7 @@ constexpr Tick warm_up = 8;                  // ticks before the first reading
 struct {
   std::vector<int> sizes{2, 4, 8, 16, 32, 64, 128, 200};
   std::set<std::string> kinds{"barrier", "states", "fields", "paced"};
-} options;
+} scaling_options;
 
 /// Two readings of the costs of all processes, in shared memory.
 struct Readings {
@@ -226,14 +226,14 @@ void print(const std::string& what, int sensors, const Readings& readings, bool 
 }  // namespace
 
 void add_scaling_options(CLI::App& command) {
-  command.add_option("--sensors", options.sizes, "numbers of sensors")
+  command.add_option("--sensors", scaling_options.sizes, "numbers of sensors")
       ->check(CLI::Range(1, 240))
       ->delimiter(',');
   command
-      .add_option("--kinds", options.kinds,
+      .add_option("--kinds", scaling_options.kinds,
                   "barrier: empty states; states: 18,470 objects; "
                   "fields: telescopes that find objects themselves; paced: barrier at 4 ticks/s")
-      ->check(CLI::IsMember(options.kinds))
+      ->check(CLI::IsMember(scaling_options.kinds))
       ->delimiter(',');
 }
 
@@ -248,16 +248,16 @@ int bench_scaling(bool json) {
     print(kind, sensors, readings.get(), own_network, json);
     return ticks_per_s(readings.get());
   };
-  for (const int sensors : options.sizes) {
+  for (const int sensors : scaling_options.sizes) {
     std::fprintf(stderr, "scaling: %d sensor nodes\n", sensors);
     double empty_ticks_per_s = 0.0;
-    if (options.kinds.contains("barrier"))
+    if (scaling_options.kinds.contains("barrier"))
       empty_ticks_per_s =
           run("barrier", sensors, listeners(sensors, 0, warm_up + std::max(200, 20000 / sensors)));
-    if (options.kinds.contains("states"))
+    if (scaling_options.kinds.contains("states"))
       run("states", sensors,
           listeners(sensors, catalogue_objects, warm_up + std::max(24, 1600 / sensors)));
-    if (options.kinds.contains("fields")) {
+    if (scaling_options.kinds.contains("fields")) {
       const Tick ticks = warm_up + std::max(200, 2000 / sensors);
       const Scenario scenario = telescope_network(sensors, ticks - 1, directory);
       const double found = run("fields", sensors, telescopes(scenario, ticks));
@@ -266,7 +266,7 @@ int bench_scaling(bool json) {
                       "empty states [1/s]", empty_ticks_per_s, target_ticks_per_s},
                      json);
     }
-    if (options.kinds.contains("paced"))
+    if (scaling_options.kinds.contains("paced"))
       run("paced", sensors, listeners(sensors, 0, warm_up + 20, paced_ticks_per_s));
   }
   std::filesystem::remove_all(directory);
