@@ -91,8 +91,7 @@ double of_patches(const SkySample& s, const PlanFacts& f) {
 /// smaller than a patch.
 double of_cut(int level, const SkySample& s, const PlanFacts& f) {
   constexpr double smallest_px = 64.0;
-  const double share =
-      f.cloud_detail_px < smallest_px ? 1.0 : 1.2 * SkyGrid::tolerance[std::size_t(level)];
+  const double share = f.cloud_detail_px < smallest_px ? 1.0 : 1.2 * SkyGrid::asked(level);
   const double brightest_e =
       PlanFacts::usual_between * (s.sky_e - s.of(SkyPart::scattered_moonlight) + f.moonlight_e(s));
   return share * std::min(brightest_e, (1.0 + share) * f.saturated_e);

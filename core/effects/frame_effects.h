@@ -83,6 +83,9 @@ struct SyntheticBackground {
 struct SkyGrid {
   /// Relative error of the sky between the pixels at which it is evaluated.
   static constexpr std::array<double, 5> tolerance{0.02, 0.005, 0.001, 0.0002, 0.0};
+  /// What `fill_from_grid` is asked for, so that its error, up to 1.2 times that, stays within the
+  /// level's.
+  static constexpr double asked(int level) { return 0.75 * tolerance[std::size_t(level)]; }
   static constexpr std::array<std::string_view, 5> levels{"2%", "0.5%", "0.1%", "0.02%", "pixel"};
   static constexpr EffectFacts facts{"sky_grid",
                                      "the sky between the pixels at which it is looked at",

@@ -49,7 +49,7 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
   const auto& optics = view.sensor().camera.optics;
   const PixelFunction electrons = electrons_of(view, sky);
   const int level = view.sensor().effects.level(SkyGrid::facts);
-  const double tolerance = SkyGrid::tolerance[std::size_t(level)];
+  const double tolerance = SkyGrid::asked(level);
   if (!evaluator) {
     if (tolerance > 0.0)
       fill_from_grid(optics.columns, optics.rows, electrons, tolerance, image.pixels.data(),
@@ -60,7 +60,7 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
   }
   std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
   evaluator->add_sky(patches_of_grid(optics.columns, optics.rows, electrons,
-                                     std::max(tolerance, SkyGrid::tolerance[2]), threads),
+                                     std::max(tolerance, SkyGrid::asked(2)), threads),
                      image);
 }
 
