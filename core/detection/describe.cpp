@@ -4,7 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include "core/base/units.h"
 #include "core/detection/aberration.h"
@@ -340,6 +342,13 @@ Detection describe(const MeasuredSource& source, const FrameHeader& header, bool
     };
   }
   return describe(measured, header);
+}
+
+void add_detection(Detection d, const FrameHeader& header, std::vector<Detection>& detections) {
+  d.index = std::uint32_t(detections.size());
+  d.excluded = header.excluded.any();
+  d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);
+  detections.push_back(std::move(d));
 }
 
 }  // namespace dmise

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "core/detection/measured_source.h"
 #include "core/detection/scene.h"
 #include "core/products/detection.h"
@@ -21,5 +23,8 @@ Detection describe(const Source& source, const FrameHeader& header);
 /// orbit does.
 Detection describe(const MeasuredSource& source, const FrameHeader& header, bool saturated,
                    bool at_edge);
+
+/// Adds a detection under the next index.
+void add_detection(Detection d, const FrameHeader& header, std::vector<Detection>& detections);
 
 }  // namespace dmise

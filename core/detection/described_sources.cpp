@@ -50,7 +50,6 @@ bool is_at_edge(const MeasuredSource& source, const CountImage& counts, double w
 
 DetectionResult described(std::vector<MeasuredSource> sources, const CountImage& counts,
                           const FrameHeader& header, Threads& threads) {
-  check_sources(sources, counts.columns, counts.rows);
   std::stable_sort(sources.begin(), sources.end(),
                    [](const MeasuredSource& a, const MeasuredSource& b) {
                      const PixelPosition &p = a.centroid.place, &q = b.centroid.place;

@@ -9,7 +9,8 @@
 
 namespace dmise {
 
-/// Finds the sources of a frame in place of our detector; nothing: the run is being stopped.
+/// Finds the sources of a frame in place of our detector, such that `check_sources` accepts them;
+/// nothing: the run is being stopped.
 using SourceFinder = std::function<std::optional<std::vector<MeasuredSource>>(const CountImage&,
                                                                               const FrameHeader&)>;
 
@@ -17,7 +18,7 @@ using SourceFinder = std::function<std::optional<std::vector<MeasuredSource>>(co
 /// frame: background and noise as `detect` measures them first, the PSF of the header, no stars.
 /// Sources where the lens images no sky are left out. A pixel that is clipped at a centroid, or
 /// between the ends of a streak, marks it as saturated; a place nearer to the frame's edge than the
-/// width of the PSF as at the edge. Throws `Error` as `check_sources` does.
+/// width of the PSF as at the edge.
 DetectionResult described(std::vector<MeasuredSource> sources, const CountImage& counts,
                           const FrameHeader& header, Threads& threads);
 

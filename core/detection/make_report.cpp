@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "core/detection/atmosphere.h"
 #include "core/detection/components.h"
@@ -65,13 +63,6 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   r.psf_stars = std::uint32_t(psf.stars);
   r.saturated_px = count_saturated(counts, lowest_clipped_dn(header));
   return r;
-}
-
-void add_detection(Detection d, const FrameHeader& header, std::vector<Detection>& detections) {
-  d.index = std::uint32_t(detections.size());
-  d.excluded = header.excluded.any();
-  d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);
-  detections.push_back(std::move(d));
 }
 
 }  // namespace dmise

@@ -1,10 +1,7 @@
 #pragma once
-#include <vector>
-
 #include "core/base/image.h"
 #include "core/detection/background.h"
 #include "core/detection/psf.h"
-#include "core/products/detection.h"
 #include "core/products/frame_header.h"
 #include "core/products/frame_report.h"
 
@@ -18,8 +15,5 @@ FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& heade
 /// The report without what depends on the sources in the frame.
 FrameReport make_report(const CountImage& counts, const FrameHeader& header,
                         const Background& background, const PsfField& psf);
-
-/// Adds a detection under the next index.
-void add_detection(Detection d, const FrameHeader& header, std::vector<Detection>& detections);
 
 }  // namespace dmise

@@ -22,4 +22,13 @@ inline OblateEarth oblate_earth(const EarthOrientation& earth, const Ellipsoid& 
   return {earth.cirs_from_gcrs.inverse() * Vec<Cirs>{0, 0, 1}, ellipsoid};
 }
 
+/// Whether a position is at least 1 m above the ellipsoid, as one of an object that moves freely
+/// must be.
+inline bool is_above_ground(const Vec<Gcrs>& position_m, const EarthOrientation& earth,
+                            const Ellipsoid& ellipsoid) {
+  constexpr double least_height_m = 1.0;
+  const OblateEarth body = oblate_earth(earth, ellipsoid);
+  return norm(body.stretched(position_m)) > body.ellipsoid.equatorial_radius_m + least_height_m;
+}
+
 }  // namespace dmise

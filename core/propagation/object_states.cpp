@@ -13,8 +13,6 @@
 namespace dmise {
 namespace {
 
-constexpr double least_height_m = 1.0;  // above the ellipsoid, of freely moving objects
-
 void set(std::vector<double>& xyz, std::size_t count, std::size_t i, const Vec<Gcrs>& v) {
   xyz[i] = v.x;
   xyz[count + i] = v.y;
@@ -36,12 +34,6 @@ bool is_fixed(const MotionModel& model) {
          std::holds_alternative<ConstantPosition<Gcrs>>(model);
 }
 
-bool is_above_ground(const Vec<Gcrs>& position_m, const StateInstant& at,
-                     const Ellipsoid& ellipsoid) {
-  const OblateEarth body = oblate_earth(at.earth, ellipsoid);
-  return norm(body.stretched(position_m)) > body.ellipsoid.equatorial_radius_m + least_height_m;
-}
-
 Placed without_state(MotionCode code) { return {{}, std::uint8_t(code)}; }
 
 /// State from a model other than SGP4; its velocity is the slope of the position.
@@ -50,7 +42,8 @@ Placed placed(const MotionModel& model, const StateInstant& at, const Ellipsoid&
     return without_state(MotionCode::outside_span);
   try {
     const auto state = in_gcrs(path_at(model, at.tai), at.earth, at.time);
-    if (is_fixed(model) || is_above_ground(state.position_m, at, ellipsoid)) return {state, 0};
+    if (is_fixed(model) || is_above_ground(state.position_m, at.earth, ellipsoid))
+      return {state, 0};
   } catch (const Error&) {  // a path through the Earth's centre
   }
   return without_state(MotionCode::underground);
@@ -64,7 +57,8 @@ Placed told_place(const ObjectStates* told, std::size_t i, const StateInstant& a
   const Vec<Gcrs> slope_m_per_s = told->slope(i);
   const double dt_s = (at.time - told->time).seconds();
   const Vec<Gcrs> position_m = told->position(i) + slope_m_per_s * dt_s;
-  if (!is_above_ground(position_m, at, ellipsoid)) return without_state(MotionCode::underground);
+  if (!is_above_ground(position_m, at.earth, ellipsoid))
+    return without_state(MotionCode::underground);
   return {{position_m, slope_m_per_s}, 0};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/formatted.h"
+#include "core/frames/oblate_earth.h"
 #include "core/orbit/interpolation_error.h"
 #include "nodes/environment/environment_actor.h"
 #include "nodes/own/joined_states.h"
@@ -10,9 +11,8 @@
 namespace dmise {
 namespace {
 
-constexpr Tick checkpoint_every = 64;  // calls
-constexpr std::size_t calls_held = 3;  // for joining two, and for the error between three
-constexpr double least_earth_radius_m = 6356752.3;  // WGS 84, at the poles
+constexpr Tick checkpoint_every = 64;      // calls
+constexpr std::size_t calls_held = 3;      // for joining two, and for the error between three
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
 
 bool is_turned_by(const OwnNode& node, const OwnObject& object) {
@@ -93,10 +93,11 @@ bool OwnActor::ask() {
   step.set_tick(tick);
   step.set_time_ns(scenario_.time_of(tick).ns);
   step.set_give_checkpoint(next_call_ % checkpoint_every == checkpoint_every - 1);
-  auto stepped = program_->step(step, environment_at(clock_, tick, scenario_.time_of(tick)));
+  const EnvironmentState environment = environment_at(clock_, tick, scenario_.time_of(tick));
+  auto stepped = program_->step(step, environment);
   if (!stepped) return false;
   check(stepped->states);
-  look_at_places(stepped->states);
+  look_at_places(stepped->states, environment.earth);
   require_same(stepped->digest);
   if (stepped->checkpoint) checkpoint_ = {next_call_, std::move(*stepped->checkpoint)};
   ++next_call_;
@@ -143,16 +144,16 @@ void OwnActor::check(const ObjectStates& states) const {
 }
 
 /// Warns of objects that are under the ground, which are not in the scene.
-void OwnActor::look_at_places(const ObjectStates& states) {
+void OwnActor::look_at_places(const ObjectStates& states, const EarthOrientation& earth) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (underground_[i] || states.code[i] != 0 || !is_moved_by(node_, *objects_[i])) continue;
-    const double radius_m = norm(states.position(i));
-    if (radius_m >= least_earth_radius_m) continue;
+    if (is_above_ground(states.position(i), earth, scenario_.earth.ellipsoid)) continue;
     underground_[i] = true;
-    settings_.note(node_.name + ": " + objects_[i]->name +
-                   formatted(" is not in the scene at tick %ld: it is %.6g m from the Earth's "
-                             "centre, under the ground",
-                             long(states.tick), radius_m));
+    settings_.note(
+        node_.name + ": " + objects_[i]->name +
+        formatted(
+            " is not in the scene at tick %ld: %.6g m from the Earth's centre is under the ground",
+            long(states.tick), norm(states.position(i))));
   }
 }
 

@@ -37,7 +37,7 @@ class OwnActor : public Actor {
   void check(const ObjectStates& states) const;
   void require_same(std::uint64_t digest);
   void look_at_errors();
-  void look_at_places(const ObjectStates& states);
+  void look_at_places(const ObjectStates& states, const EarthOrientation& earth);
   v1::OwnNodeBegin begin() const;
   const ObjectStates& states_of(Tick call) const;
   Tick tick_of(Tick call) const { return call * node_.period_ticks; }

@@ -65,8 +65,8 @@ class SensorFrame:
         return float(self.header["EXPTIME"])
 
 
-class Detector:
-    """A function `f(frame, options)` that returns what is in a frame, or a class whose instances are called so."""
+class Served:
+    """A function of the user's, or a class whose instances are called so."""
 
     def __init__(self, model: Callable[..., Any]) -> None:
         self._model = model
@@ -76,6 +76,10 @@ class Detector:
 
     def __call__(self, *arguments: Any) -> Any:
         return self._model(*arguments)
+
+
+class Detector(Served):
+    """A function `f(frame, options)` that returns what is in a frame, or a class whose instances are called so."""
 
 
 def detector(model: Callable[..., Any]) -> Detector:

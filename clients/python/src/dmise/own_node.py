@@ -24,7 +24,7 @@ import zmq
 
 from . import own_detector, protocol
 from .convert import record_of, start_of
-from .own_detector import Detector
+from .own_detector import Detector, Served
 from .records import ArrayLike, Floats
 from .world import EnvironmentState
 
@@ -64,21 +64,15 @@ class World:
         return self.environment.time_utc
 
 
-class Actor:
+class Actor(Served):
     """A model that says where objects are: a function `f(t_s, world, options)`, or a class whose instances are called so.
 
     A class may have `checkpoint() -> bytes` and `restore(bytes)`; else what it remembers is made again from the first tick.
     """
 
     def __init__(self, model: Callable[..., Any], names: tuple[str, ...]) -> None:
+        super().__init__(model)
         self.names = list(names)
-        self._model = model
-
-    def make(self) -> Any:
-        return self._model() if isinstance(self._model, type) else self._model
-
-    def __call__(self, *arguments: Any) -> Any:
-        return self._model(*arguments)
 
 
 def actor(*names: str) -> Callable[[Callable[..., Any]], Actor]:
@@ -88,7 +82,7 @@ def actor(*names: str) -> Callable[[Callable[..., Any]], Actor]:
 
 def serve(model: Actor | Detector) -> None:
     """Says what `model` says, tick by tick or frame by frame, to the run that has started this program, until the run ends."""
-    if not isinstance(model, Actor | Detector):
+    if not isinstance(model, Served):
         raise TypeError(f"serve: takes what @dmise.actor(..) or @dmise.detector marks, got {type(model).__name__}")
     address = os.environ.get(ADDRESS_VARIABLE)
     if not address:
