@@ -126,10 +126,11 @@ void add_bleeding(const Lines& lines, const Frame& frame, const Background& sky,
     return line >= 0 && line < lines.count &&
            double(pixels[lines.at(line, place)]) >= frame.header.saturation_dn;
   };
+  // Up to `least_core`: wider is wide enough.
   const auto width_at = [&](int line, int place) {
     int first = line, last = line;
-    while (clipped(first - 1, place)) --first;
-    while (clipped(last + 1, place)) ++last;
+    while (last - first + 1 < least_core && clipped(first - 1, place)) --first;
+    while (last - first + 1 < least_core && clipped(last + 1, place)) ++last;
     return last - first + 1;
   };
   const auto light_at = [&](int line, int place) {

@@ -71,6 +71,18 @@ TEST(DetectorDefects, ChargeThatFlowedAlongAColumnIsNoStreak) {
   EXPECT_EQ(detections_in(frame).size(), 1u);
 }
 
+// A frame of dawn: looking along each clipped pixel's whole line takes an hour.
+TEST(DetectorDefects, AFrameThatIsSaturatedEverywhereHasNoStarWhoseChargeFlowed) {
+  constexpr int side = 4000;
+  Frame frame;
+  frame.counts = CountImage(side, side);
+  frame.counts.pixels.assign(frame.counts.pixels.size(), 65535);
+  frame.header.saturation_dn = 65000;
+  Threads threads(2);
+  leave_out_bleeding(frame, threads);
+  EXPECT_TRUE(frame.notes.assumed.empty());
+}
+
 // Single pixels of an SNR of 20 to 300, as in a frame without a dark; all stars stay.
 TEST(DetectorDefects, HotPixelsAreNoLight) {
   const Scene scene = draw(false, 4);
