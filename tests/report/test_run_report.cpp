@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/report/run_report.h"
@@ -52,7 +55,10 @@ TEST(RunReport, IsTheSameForTheSameRun) {
 }
 
 TEST(RunReport, RefusesADirectoryWithoutARun) {
-  EXPECT_THROW(read_contents(testing::TempDir()), ConfigError);
+  const std::string empty = testing::TempDir() + "/no-run-" + std::to_string(getpid());
+  std::filesystem::create_directory(empty);
+  EXPECT_THROW(read_contents(empty), ConfigError);
+  std::filesystem::remove(empty);
 }
 
 }  // namespace
