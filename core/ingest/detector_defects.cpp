@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "core/base/formatted.h"
 #include "core/base/quantile.h"
 #include "core/base/rng.h"
+#include "core/base/text_fields.h"
 #include "core/detection/background.h"
 #include "core/detection/trail_light.h"
 
@@ -23,16 +25,25 @@ struct Section {
   int x0, x1, y0, y1;
 };
 
-/// "[x1:x2,y1:y2]", from 1.
-std::optional<Section> section_of(const std::string& text) {
-  Section s{};
-  char end = 0;
-  if (std::sscanf(text.c_str(), " [ %d : %d , %d : %d %c", &s.x0, &s.x1, &s.y0, &s.y1, &end) != 5 ||
-      end != ']')
-    return std::nullopt;
-  if (s.x0 > s.x1) std::swap(s.x0, s.x1);
-  if (s.y0 > s.y1) std::swap(s.y0, s.y1);
-  return Section{s.x0 - 1, s.x1 - 1, s.y0 - 1, s.y1 - 1};
+/// First and last pixel of "from:to" from 1 on, in either order, as pixels from 0.
+std::optional<std::pair<int, int>> range_of(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == text.npos) return std::nullopt;
+  const auto from = parse_integer(trimmed(text.substr(0, colon)));
+  const auto to = parse_integer(trimmed(text.substr(colon + 1)));
+  if (!from || !to || *from < 1 || *to < 1) return std::nullopt;
+  return std::pair{std::min(*from, *to) - 1, std::max(*from, *to) - 1};
+}
+
+/// Of "[x1:x2,y1:y2]".
+std::optional<Section> section_of(const std::string& card) {
+  const std::string_view text = trimmed(card);
+  const std::size_t comma = text.find(',');
+  if (!text.starts_with('[') || !text.ends_with(']') || comma == text.npos) return std::nullopt;
+  const auto x = range_of(text.substr(1, comma - 1));
+  const auto y = range_of(text.substr(comma + 1, text.size() - comma - 2));
+  if (!x || !y) return std::nullopt;
+  return Section{x->first, x->second, y->first, y->second};
 }
 
 /// The columns, or the rows, of an image.
@@ -175,7 +186,7 @@ void leave_out_overscan(const StandardCards& cards, int columns, int rows,
     const auto section = section_of(cards.text(key));
     if (!section) continue;
     const auto [x0, x1, y0, y1] = *section;
-    if (x0 < 0 || y0 < 0 || x1 >= columns || y1 >= rows) continue;
+    if (x1 >= columns || y1 >= rows) continue;
     const double share = double(x1 - x0 + 1) * (y1 - y0 + 1) / (double(columns) * rows);
     if (share == 1.0 || share < 0.5) continue;
     for (int y = 0; y < rows; ++y)

@@ -45,10 +45,17 @@ TEST(DetectorDefects, OverscanIsNotUsed) {
   const Frame frame = read_one(image);
   EXPECT_EQ(unusable_in(frame, 460, columns - 1), std::size_t(40 * rows));
   EXPECT_EQ(detections_in(frame).size(), 2u);
-  // Of the frame before it was cut.
-  image.cards.back() = card("DATASEC", "'[51:2098,1:4608]'");
-  for (const std::string& text : read_one(image).notes.assumed)
-    EXPECT_THAT(text, testing::Not(HasSubstr("DATASEC")));
+  image.cards.back() = card("TRIMSEC", "' [ 460 : 1 , 1 : +400 ] '");  // flipped, with blanks
+  EXPECT_EQ(unusable_in(read_one(image), 460, columns - 1), std::size_t(40 * rows));
+  // Of the frame before it was cut, and texts that are no section.
+  for (const char* text :
+       {"'[51:2098,1:4608]'", "'[0:460,1:400]'", "'[-2147483648:460,1:400]'",
+        "'[1:99999999999,1:400]'", "'[1:460,1:400'", "'[1:460;1:400]'", "'[1:460,1:400]x'", "'[,]'",
+        "'[]'", "'['", "'[1:4:460,1:400]'", "'460'"}) {
+    image.cards.back() = card("DATASEC", text);
+    for (const std::string& note : read_one(image).notes.assumed)
+      EXPECT_THAT(note, testing::Not(HasSubstr("DATASEC"))) << text;
+  }
 }
 
 // A star of 8 times the full well, whose charge fills its column and falls off beyond.
