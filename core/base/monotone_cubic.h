@@ -16,6 +16,7 @@ class MonotoneCubic {
   bool empty() const { return at_.empty(); }
   const std::vector<double>& at() const { return at_; }
   const std::vector<double>& value() const { return value_; }
+  const std::vector<double>& slope() const { return slope_; }  // at each place
   double operator()(double x) const;
 
   bool operator==(const MonotoneCubic&) const = default;

@@ -18,9 +18,10 @@ struct ZodiacalLight {
 };
 
 /// Brightness [S10] at 500 nm by ecliptic longitude from the Sun and ecliptic latitude [rad, any].
-/// The table's own values at its nodes, log-linear between them; within 15 deg of the Sun, where
-/// the table ends, the power -2.2 of elongation continues it, held inside 2.5 deg. Source: Leinert
-/// et al. 1998, A&AS 127, 1, table 17; 1 S10 is 1.28e-8 W/m2/sr/um.
+/// The table's own values at its nodes, a bicubic of the logarithm with continuous slopes between
+/// them; within 15 deg of the Sun, where the table ends, the power -2.2 of elongation continues it,
+/// held inside 2.5 deg. Source: Leinert et al. 1998, A&AS 127, 1, table 17; 1 S10 is 1.28e-8
+/// W/m2/sr/um.
 double zodiacal_light_s10(double longitude_from_sun_rad, double latitude_rad);
 
 /// Its light over sunlight is 1 + slope x redness: the slope by the angle from the Sun [rad], 0.8

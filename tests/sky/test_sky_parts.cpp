@@ -65,6 +65,30 @@ TEST(ZodiacalLight, EveryValueOfLeinertsTable) {
   EXPECT_EQ(compared, 201);
 }
 
+// Reference: scipy 1.10, PchipInterpolator through the logarithms of a row or a column of the
+// table, which goes on beyond its ends as in a mirror.
+TEST(ZodiacalLight, IsSmoothBetweenTheNodesOfTheTable) {
+  const struct {
+    double longitude_deg, latitude_deg, s10;
+  } between[] = {{32.5, 0, 1569.742},  {52.5, 0, 515.929},   {97, 0, 182.5361},
+                 {172, 0, 167.1046},   {32.5, 10, 818.8765}, {97, 10, 164.5099},
+                 {52.5, 45, 115.8128}, {172, 45, 81.7861},   {30, 2, 1812.4062},
+                 {30, 12.5, 787.8699}, {90, 37, 91.4559},    {150, 84, 58.7512}};
+  for (const auto& [longitude_deg, latitude_deg, s10] : between)
+    EXPECT_NEAR(zodiacal_light_s10(longitude_deg * deg, latitude_deg * deg), s10, 1e-6 * s10)
+        << longitude_deg << " " << latitude_deg;
+  constexpr double step = 1e-4;
+  const auto log_at = [](double l, double b) {
+    return std::log(zodiacal_light_s10(l * deg, b * deg));
+  };
+  for (double l = 0; l <= 180; l += 5)
+    for (double b = 0; b <= 85; b += 2.5) {
+      const double here = 2 * log_at(l, b);
+      EXPECT_NEAR(log_at(l + step, b) + log_at(l - step, b), here, 1e-3 * step) << l << " " << b;
+      EXPECT_NEAR(log_at(l, b + step) + log_at(l, b - step), here, 1e-3 * step) << l << " " << b;
+    }
+}
+
 TEST(ZodiacalLight, ContinuousAndFiniteTowardsTheSun) {
   double last = zodiacal_light_s10(0, 0);
   EXPECT_TRUE(std::isfinite(last));
