@@ -115,7 +115,6 @@ v1::NodeMessage done_message(const TickTally& tally) {
 }  // namespace
 
 void MasterLink::done(const TickTally& tally) {
-  notice_breaks();
   while (!done_.empty() && done_.back().tick >= tally.tick) done_.pop_back();  // it is repeated
   done_.push_back(tally);
   while (!done_.empty() && done_.front().tick <= granted_ - Tick(welcome_.window_ticks()))
@@ -215,13 +214,13 @@ void MasterLink::wait(const std::vector<zmq::socket_t*>& sockets, nanoseconds at
   items_.clear();
   items_.push_back({ticks_.handle(), 0, ZMQ_POLLIN, 0});
   items_.push_back({control_.handle(), 0, ZMQ_POLLIN, 0});
-  for (zmq::socket_t* socket : sockets) items_.push_back({socket->handle(), 0, ZMQ_POLLIN, 0});
   items_.push_back({breaks_.handle(), 0, ZMQ_POLLIN, 0});
+  for (zmq::socket_t* socket : sockets) items_.push_back({socket->handle(), 0, ZMQ_POLLIN, 0});
   if (stop_ && !prove_at_) items_.push_back({nullptr, stop_->fd(), ZMQ_POLLIN, 0});
   if (heartbeat_) items_.push_back({nullptr, heartbeat_->news().fd(), ZMQ_POLLIN, 0});
   if (prove_at_) at_most = std::min(at_most, *prove_at_ - now());
   wait_for(items_, at_most);
-  notice_breaks();
+  if (items_[2].revents || prove_at_) notice_breaks();
   if (items_[0].revents) handle_ticks();
   if (items_[1].revents) handle_control();
   if (heartbeat_ && items_.back().revents) take(heartbeat_->latest());
