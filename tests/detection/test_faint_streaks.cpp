@@ -70,6 +70,15 @@ Found found_of(double length, double snr, int frames, int stars, double sagitta 
 
 TEST(FaintStreaks, NoiseHasNone) { EXPECT_EQ(found_of(0, 0, 6, 0).false_alarms, 0); }
 
+// 61 Mpx have lines of thousands of pixels, of which noise makes some that look like streaks.
+TEST(FaintStreaks, NoiseOfTheLargestCamerasHasNone) {
+  constexpr int columns = 9576, rows = 6388;
+  const auto header = camera_header(columns, rows, 5000, 0.6, 1e-3, true);
+  SimulatedFrame frame(header, columns, rows, sky_e, 5);
+  Threads threads(2);
+  EXPECT_EQ(detect(frame.expose(), header, {}, threads).detections.size(), 0u);
+}
+
 /// Pd = Q(threshold - SNR) with the threshold of 7.2 that noise demands, 0.5 in SNR later. Of a
 /// length of 300 px the SNR of a pixel is below 1.
 TEST(FaintStreaks, AreFoundAtAnSnrThatTheirPixelsDoNotShow) {
