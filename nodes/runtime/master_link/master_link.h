@@ -109,6 +109,7 @@ class MasterLink {
   bool receives_ticks_ = false;
   TimeSplit times_;
   bool connected_ = false;
+  Instant look_at_{0};  // when to look for a broken connection next
   bool ready_ = false;
   std::deque<TickTally> done_;         // ticks that the master may not have heard of
   std::vector<v1::NodeMessage> held_;  // until it knows this process again
