@@ -47,7 +47,8 @@ def copy(path, to, keep=lambda topic, number: True, compression=mcap.writer.Comp
             if isinstance(record, mcap.records.Schema):
                 ids["schema", record.id] = writer.register_schema(record.name, record.encoding, record.data)
             elif isinstance(record, mcap.records.Channel):
-                ids[record.id] = writer.register_channel(record.topic, record.message_encoding, ids["schema", record.schema_id]), record.topic
+                schema = ids["schema", record.schema_id]
+                ids[record.id] = writer.register_channel(record.topic, record.message_encoding, schema), record.topic
             elif isinstance(record, mcap.records.Message):
                 channel, topic = ids[record.channel_id]
                 if keep(topic, record.sequence):
@@ -77,16 +78,21 @@ def refuses(binary, directory, scenario, path):
     told(r"probe.oem: not an MCAP file", directory / "probe.oem")
     told(r"--replay-node: must be NODE=FILE with a node of the scenario.*got gnd=", node="gnd")
     text = scenario.read_text()
-    for name, old, new, words in (("digest", "seed: 1", "seed: 2", "is of another scenario, seed, plan or file: digest [0-9a-f]{32}"),
-                                  ("ticks", "tick_s: 1", "tick_s: 2", "its ticks have 1000000000 ns, those of the scenario 2000000000")):
+    for name, old, new, words in (
+            ("digest", "seed: 1", "seed: 2", "is of another scenario, seed, plan or file: digest [0-9a-f]{32}"),
+            ("ticks", "tick_s: 1", "tick_s: 2", "its ticks have 1000000000 ns, those of the scenario 2000000000")):
         other = scenario.with_name(f"{name}.yaml")
         other.write_text(text.replace(old, new))
         told(words, of=other)
     topic = "state/actor/gnc"
     told("has nothing of node gnc", copy(path, directory / "none.mcap", lambda name, _: name != topic))
     told("does not say of which run it is", copy(path, directory / "no-run.mcap", lambda name, _: name != "run"))
-    told("lacks tick 8 of node gnc", copy(path, directory / "gap.mcap", lambda name, number: name != topic or number != 9))
-    told("ends after tick 7 of node gnc, the run has 20", copy(path, directory / "short.mcap", lambda name, number: name != topic or number < 9))
+    gap = copy(path, directory / "gap.mcap", lambda name, number: name != topic or number != 9)
+    told("lacks tick 8 of node gnc", gap)
+    short = copy(path, directory / "short.mcap", lambda name, number: name != topic or number < 9)
+    told("ends after tick 7 of node gnc, the run has 20", short)
+    dmise(binary, "run", scenario, "--replay-node", f"gnc={short}", "--out", directory / "again", "--force", code=2)
+    check_same(directory / "again", directory / "recorded", "products are lost by no refused recording")
     whole = path.read_bytes()
     for size in (9, 100, len(whole) // 3):
         (directory / "cut.mcap").write_bytes(whole[:size])

@@ -17,7 +17,8 @@ PUBLIC = ["node.h"]  # in include/dmise, beside core
 
 def call(*command):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
-    check(done.returncode == 0, f"{' '.join(map(str, command[:2]))} {(done.stdout + done.stderr)[-2000:] if done.returncode else ''}")
+    said = (done.stdout + done.stderr)[-2000:] if done.returncode else ""
+    check(done.returncode == 0, f"{' '.join(map(str, command[:2]))} {said}")
 
 
 def built_elsewhere(build, compiler, directory):
@@ -26,7 +27,8 @@ def built_elsewhere(build, compiler, directory):
     call("cmake", "--install", build, "--prefix", prefix, "--component", "development")
     headers = sorted(path.name for path in (prefix / "include/dmise").iterdir())
     check(headers == sorted([*PUBLIC, "core"]), f"include/dmise has {headers}")
-    call("cmake", "-G", "Ninja", "-S", EXAMPLE, "-B", project, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_COMPILER={compiler}")
+    call("cmake", "-G", "Ninja", "-S", EXAMPLE, "-B", project, f"-DCMAKE_PREFIX_PATH={prefix}",
+         f"-DCMAKE_CXX_COMPILER={compiler}")
     call("cmake", "--build", project)
     return project / "my_actor"
 
@@ -40,7 +42,8 @@ def test(binary, directory):
     by_file = write(directory, "file.yaml", motion=f"{{two_body: {{{ORBIT}}}}}", output=", positions: [csv, jsonl]")
     dmise(binary, "run", by_file, "--out", directory / "file")
     for command in ("run", "launch"):
-        by_node = write(directory, "node.yaml", node=f"run: [./my_actor], options: {{{ORBIT}}}", output=", positions: [csv, jsonl]")
+        by_node = write(directory, "node.yaml", node=f"run: [./my_actor], options: {{{ORBIT}}}",
+                        output=", positions: [csv, jsonl]")
         dmise(binary, command, by_node, "--allow-programs", "--out", directory / command)
         check_like(directory / command, directory / "file", f"{command}: a node in C++ that moves by two_body is two_body")
     wrong = write(directory, "wrong.yaml", node="run: [./my_actor]")
