@@ -17,6 +17,9 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 class TrustedDirectories : public testing::Test {
+ public:
+  ~TrustedDirectories() override { fs::remove_all(top_); }
+
  protected:
   TrustedDirectories() {
     for (const fs::path& directory : {top_, list_.parent_path(), top_ / "a/b", top_ / "ab"}) {
@@ -25,7 +28,6 @@ class TrustedDirectories : public testing::Test {
     }
     allow(top_ / "a", 0755);
   }
-  ~TrustedDirectories() override { fs::remove_all(top_); }
 
   static void allow(const fs::path& path, unsigned mode) { fs::permissions(path, fs::perms(mode)); }
   void list(const std::string& text) const {

@@ -84,9 +84,11 @@ std::string request_of(const v1::OwnNodeStep& step) {
 using Request = std::vector<std::string>;  // frames
 
 class CppNode : public testing::Test {
+ public:
+  ~CppNode() override { std::filesystem::remove_all(directory_); }
+
  protected:
   CppNode() { std::filesystem::create_directories(directory_); }
-  ~CppNode() override { std::filesystem::remove_all(directory_); }
 
   OwnProgram program(const v1::OwnNodeBegin& begun = begin()) const {
     return {{.name = "gnc", .command = {DMISE_WALK_NODE}, .log_path = log_}, begun, true};
