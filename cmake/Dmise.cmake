@@ -109,12 +109,12 @@ function(dmise_library name)
     target_link_libraries(${name} INTERFACE ${ARG_DEPENDS})
   endif()
   if(name MATCHES "^core_")
-    install_core_library(${name})
+    install_library(${name})
   endif()
 endfunction()
 
-# install_core_library(NAME): for other projects, as dmise::NAME.
-function(install_core_library name)
+# install_library(NAME): for other projects, as dmise::NAME.
+function(install_library name)
   get_target_property(type ${name} TYPE)
   if(type STREQUAL "INTERFACE_LIBRARY")
     target_include_directories(${name} INTERFACE $<INSTALL_INTERFACE:include/dmise>)

@@ -1,5 +1,5 @@
 # What `cmake --install` and `./dmise package` put where. Component `runtime` is what the package and the container image
-# hold; `development` is what other projects need to use core/.
+# hold; `development` is what other projects need to use core/ and clients/cpp.
 include(CMakePackageConfigHelpers)
 
 foreach(kind cameras catalogues materials models scenarios sites)
@@ -36,7 +36,7 @@ configure_package_config_file(cmake/dmiseConfig.cmake.in ${CMAKE_BINARY_DIR}/dmi
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/dmiseConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/dmiseConfig.cmake ${CMAKE_BINARY_DIR}/dmiseConfigVersion.cmake
-              cmake/CorePackages.cmake
+              cmake/InstalledPackages.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
 # The package, of the release that it is made on: 1.0.0~deb13.

@@ -4,17 +4,22 @@
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/paths.h"
+#include "core/base/printable.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "core/sim/controller.h"
+#include "core/sim/participant.h"
 #include "launch/commands.h"
 #include "launch/common_options.h"
 #include "launch/node_makers.h"
@@ -23,6 +28,7 @@
 #include "launch/progress.h"
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
+#include "nodes/own/recorded_actor.h"
 #include "nodes/runtime/process/event.h"
 #include "sensors/pipeline/recorded_plans.h"
 #include "sensors/pipeline/sensor_evaluator.h"
@@ -35,7 +41,10 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   int threads = 1;
   bool force = false, allow_programs = false;
+  std::vector<std::string> replayed;  // NODE=FILE
 };
+
+using Participants = std::map<std::string, std::unique_ptr<Participant>>;  // by node
 
 constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 
@@ -44,11 +53,12 @@ constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 class EmbeddedRun {
  public:
   EmbeddedRun(const Scenario& scenario, ScenarioInputs scene, const RunDirectory& directory,
-              int thread_count, Tick first_tick)
+              int thread_count, Tick first_tick, Participants replayed)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
     print_outlook(scenario, scene, make_clock(scenario));
-    NodeParts parts{scenario,         scene,    directory.digest(),
-                    directory.path(), threads_, [this](const std::string& line) { note(line); }};
+    NodeParts parts{scenario,           scene,    directory.digest(),
+                    directory.path(),   threads_, [this](const std::string& line) { note(line); },
+                    std::move(replayed)};
     for (const NodeKind& kind : node_kinds())
       for (const auto& node : nodes_of(kind, scenario)) {
         participants_.push_back(maker_of(kind).make(node, parts));
@@ -162,28 +172,66 @@ class EmbeddedRun {
   bool finished_ = false;
 };
 
+/// Recordings by the nodes that they replay.
+std::map<std::string, std::string> recordings_of(const std::vector<std::string>& replayed,
+                                                 const Scenario& scenario) {
+  std::map<std::string, std::string> recordings;
+  for (const std::string& one : replayed) {
+    const std::string name = one.substr(0, one.find('='));
+    const auto node = std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
+    if (name == one || node == scenario.own_nodes.end() || node->detects)
+      throw ConfigError(
+          "--replay-node: must be NODE=FILE with a node of the scenario that moves or turns "
+          "objects, got " +
+          printable(one));
+    recordings[name] = one.substr(name.size() + 1);
+  }
+  return recordings;
+}
+
+/// Reads the recordings. Throws `ConfigError` for one that is not whole or of another run.
+Participants replayed_nodes(const std::map<std::string, std::string>& recordings,
+                            const Scenario& scenario, const std::string& digest) {
+  Participants nodes;
+  for (const auto& [node, path] : recordings)
+    nodes[node] = std::make_unique<RecordedActor>(scenario, node, digest, path);
+  return nodes;
+}
+
+/// The nodes whose programs take part.
+std::vector<OwnNode> nodes_without(const std::map<std::string, std::string>& recordings,
+                                   const Scenario& scenario) {
+  std::vector<OwnNode> nodes = scenario.own_nodes;
+  std::erase_if(nodes, [&](const OwnNode& node) { return recordings.contains(node.name); });
+  return nodes;
+}
+
 /// Nobody can join a run in one process.
-void refuse_elsewhere(const Scenario& scenario) {
-  for (const OwnNode& node : scenario.own_nodes)
+void refuse_elsewhere(const std::vector<OwnNode>& nodes) {
+  for (const OwnNode& node : nodes)
     if (node.run.empty())
       throw ConfigError(node.where + ": is elsewhere: only `dmise launch` lets it join");
 }
 
 void run(const RunOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
-  if (!options.allow_programs) refuse_programs(scenario.own_nodes);
-  refuse_elsewhere(scenario);
+  const auto recordings = recordings_of(options.replayed, scenario);
+  const std::vector<OwnNode> programs = nodes_without(recordings, scenario);
+  if (!options.allow_programs) refuse_programs(programs);
+  refuse_elsewhere(programs);
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
   scenario.network.publish_states = false;  // nobody outside this process can take them
   ScenarioInputs scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
+  Participants replayed = replayed_nodes(recordings, scenario, directory.digest());
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();
   if (!scenario.own_nodes.empty()) make_directories(directory.path() + "/logs");
   const auto start = std::chrono::steady_clock::now();
-  EmbeddedRun embedded(scenario, std::move(scene), directory, options.threads, begin.first_tick);
+  EmbeddedRun embedded(scenario, std::move(scene), directory, options.threads, begin.first_tick,
+                       std::move(replayed));
   RunOutcome outcome = embedded.run();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!embedded.in_step()) return finish_run(directory, scenario, outcome);
@@ -209,6 +257,11 @@ void add_run_command(CLI::App& app) {
   command->add_option("--plan", options->plan,
                       "run.json of a run: its frames' levels of effects instead of a plan");
   add_allow_programs_flag(*command, options->allow_programs);
+  command
+      ->add_option("--replay-node", options->replayed,
+                   "NODE=FILE: what the node has said in a recorded run (MCAP), in place of its "
+                   "program; for several nodes give it several times")
+      ->allow_extra_args(false);
   command->add_flag("--force", options->force, "replace the products in the directory");
   command->callback([options] { run(*options); });
 }

@@ -1,6 +1,7 @@
 #include "launch/node_makers.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
@@ -34,6 +35,8 @@ std::unique_ptr<Participant> make_environment(const std::string&, NodeParts& par
 std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& parts) {
   const auto& nodes = parts.scenario.own_nodes;
   const OwnNode& node = *std::ranges::find(nodes, name, &OwnNode::name);
+  if (const auto found = parts.replayed.find(name); found != parts.replayed.end())
+    return std::move(found->second);
   return std::make_unique<OwnActor>(
       parts.scenario, node, make_clock(parts.scenario),
       OwnNodeSettings{.log_path = parts.directory + "/logs/" + name + ".log",

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +18,8 @@ struct NodeParts {
   ScenarioInputs& scene;  // parts with a single user are moved out
   std::string digest, directory;
   Threads& threads;
-  std::function<void(const std::string&)> note;  // prints a line
+  std::function<void(const std::string&)> note;                       // prints a line
+  std::map<std::string, std::unique_ptr<Participant>> replayed = {};  // own nodes; moved out
 };
 
 /// Properties of a kind of node for `dmise run`, in addition to its row in

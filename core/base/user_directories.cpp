@@ -19,4 +19,6 @@ std::string cache_directory() { return user_directory("XDG_CACHE_HOME", ".cache"
 
 std::string data_directory() { return user_directory("XDG_DATA_HOME", ".local/share"); }
 
+std::string config_directory() { return user_directory("XDG_CONFIG_HOME", ".config"); }
+
 }  // namespace dmise

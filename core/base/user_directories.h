@@ -11,4 +11,8 @@ std::string cache_directory();
 /// ~/.local/share/dmise; empty if neither variable is set. It need not exist.
 std::string data_directory();
 
+/// Returns this user's directory for settings: $XDG_CONFIG_HOME/dmise or ~/.config/dmise; empty if
+/// neither variable is set. It need not exist.
+std::string config_directory();
+
 }  // namespace dmise

@@ -10,6 +10,7 @@
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/base/text_fields.h"
+#include "core/config/trusted_directories.h"
 #include "core/config/yaml_reader.h"
 
 namespace dmise {
@@ -37,7 +38,7 @@ const Section& own_node_section() {
       {required("name", form::text(), "A unique name of letters, digits, - and _."),
        optional("run", form::list(form::text(), 1),
                 "Program and arguments. It runs in the directory of the scenario, and only with "
-                "`--allow-programs`."),
+                "`--allow-programs` or in a trusted directory."),
        optional("elsewhere", form::flag(),
                 "The program is started by whoever joins it, with `dmise join SCENARIO NAME "
                 "--program`.",
@@ -169,15 +170,19 @@ std::string command_text(const OwnNode& node) {
 }
 
 void refuse_programs(const std::vector<OwnNode>& nodes) {
-  std::string where, programs;
+  const std::string list = trusted_directories_file();
+  std::string where, programs, distrust;
   for (const OwnNode& node : nodes) {
     if (node.run.empty()) continue;
+    const std::string why = list.empty() ? "" : why_not_trusted(node.directory, list);
+    if (!list.empty() && why.empty()) continue;
     if (where.empty()) where = node.run_where;
+    if (distrust.empty() && !why.empty()) distrust = "; " + why;
     programs += (programs.empty() ? "" : ", ") + ("`" + command_text(node) + "`");
   }
   if (!programs.empty())
     throw ConfigError(where + ": the scenario starts " + programs +
-                      "; --allow-programs permits it");
+                      "; --allow-programs or a trusted directory permits it" + distrust);
 }
 
 void refuse_own_nodes(const std::vector<OwnNode>& nodes, const std::string& who) {

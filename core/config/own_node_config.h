@@ -37,7 +37,8 @@ std::string program_of(const OwnNode& node);
 
 /// "python3 gnc.py", for messages.
 std::string command_text(const OwnNode& node);
-/// Throws `ConfigError` that lists the programs that these nodes would start, if there are any.
+/// Throws `ConfigError` that lists the programs that these nodes would start, if there are any, but
+/// for those in directories that the user trusts (core/config/trusted_directories.h).
 void refuse_programs(const std::vector<OwnNode>& nodes);
 /// Throws `ConfigError` if there are nodes; `who` can't have any: "dmise tradeoff".
 void refuse_own_nodes(const std::vector<OwnNode>& nodes, const std::string& who);

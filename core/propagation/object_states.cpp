@@ -7,17 +7,13 @@
 #include "core/base/error.h"
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/interpolation.h"
+#include "core/sim/columns.h"
 #include "core/sky/sun_moon.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
 namespace {
 
-void set(std::vector<double>& xyz, std::size_t count, std::size_t i, const Vec<Gcrs>& v) {
-  xyz[i] = v.x;
-  xyz[count + i] = v.y;
-  xyz[2 * count + i] = v.z;
-}
 template <class F>
 Vec<F> get(const std::vector<double>& xyz, std::size_t count, std::size_t i) {
   return {xyz[i], xyz[count + i], xyz[2 * count + i]};
@@ -65,7 +61,7 @@ Placed told_place(const ObjectStates* told, std::size_t i, const StateInstant& a
 /// An object that its node does not turn at this tick is not in the scene.
 void take_out(ObjectStates& states, std::size_t k) {
   for (auto* numbers : {&states.position_m, &states.slope_m_per_s, &states.velocity_m_per_s})
-    set(*numbers, states.count, k, {});
+    set_column(*numbers, states.count, k, Vec<Gcrs>{});
   states.code[k] = std::uint8_t(MotionCode::untold);
 }
 
@@ -228,12 +224,12 @@ void StateSource::add_sgp4(const Scene& scene, ObjectStates& states) const {
   for (std::size_t i = 0; i < k; ++i) {
     states.code[i] = now.code[i] ? now.code[i] : before.code[i] ? before.code[i] : after.code[i];
     if (states.code[i]) continue;
-    set(states.position_m, n, i, at[1].gcrs_from_teme * get<Teme>(now.position_m, k, i));
-    set(states.velocity_m_per_s, n, i,
-        at[1].gcrs_from_teme * get<Teme>(now.velocity_m_per_s, k, i));
+    set_column(states.position_m, n, i, at[1].gcrs_from_teme * get<Teme>(now.position_m, k, i));
+    set_column(states.velocity_m_per_s, n, i,
+               at[1].gcrs_from_teme * get<Teme>(now.velocity_m_per_s, k, i));
     const Vec<Gcrs> path = at[2].gcrs_from_teme * get<Teme>(after.position_m, k, i) -
                            at[0].gcrs_from_teme * get<Teme>(before.position_m, k, i);
-    set(states.slope_m_per_s, n, i, path / span_s);
+    set_column(states.slope_m_per_s, n, i, path / span_s);
   }
 }
 
@@ -242,9 +238,9 @@ void StateSource::add_models(const Scene& scene, ObjectStates& states) const {
     const Placed path = scene.placed_at(k, 1);
     states.code[k] = path.code;
     if (path.code) continue;
-    set(states.position_m, states.count, k, path.state.position_m);
-    set(states.slope_m_per_s, states.count, k, path.state.velocity_m_per_s);
-    set(states.velocity_m_per_s, states.count, k, scene.velocity_of(k));
+    set_column(states.position_m, states.count, k, path.state.position_m);
+    set_column(states.slope_m_per_s, states.count, k, path.state.velocity_m_per_s);
+    set_column(states.velocity_m_per_s, states.count, k, scene.velocity_of(k));
   }
 }
 
@@ -279,9 +275,8 @@ void StateSource::add_attitudes(const Scene& wanted, ObjectStates& states) const
       continue;
     }
     const Quaternion& q = state->gcrs_from_body;
-    const double components[4] = {q.w, q.x, q.y, q.z};
-    for (std::size_t c = 0; c < 4; ++c) states.gcrs_from_body[c * m + a] = components[c];
-    set(states.attitude_rate_rad_per_s, m, a, state->rate_rad_per_s);
+    set_column(states.gcrs_from_body, m, a, {q.w, q.x, q.y, q.z});
+    set_column(states.attitude_rate_rad_per_s, m, a, state->rate_rad_per_s);
   }
 }
 

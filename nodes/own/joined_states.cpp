@@ -6,20 +6,12 @@
 #include "core/orbit/attitude_interpolation.h"
 #include "core/orbit/interpolation.h"
 #include "core/orbit/motion.h"
+#include "core/sim/columns.h"
 
 namespace dmise {
 namespace {
 
 constexpr double half_step_of_rates = 1e-4;  // in intervals
-
-/// Numbers of object `i`, which stand `count` apart.
-void set(std::vector<double>& numbers, std::size_t count, std::size_t i,
-         std::initializer_list<double> values) {
-  for (const double value : values) {
-    numbers[i] = value;
-    i += count;
-  }
-}
 
 /// Angular velocity [rad/s] that turns `from` to `to`, an angle much less than 1 apart.
 Vec<Gcrs> rate_between(const Quaternion& from, const Quaternion& to, double dt_s) {
@@ -45,8 +37,8 @@ void join_attitudes(const ObjectStates& before, const ObjectStates& after, doubl
     const Quaternion q = at(u);
     const Vec<Gcrs> rate = rate_between(at(u - half_step_of_rates), at(u + half_step_of_rates),
                                         2 * half_step_of_rates * span_s);
-    set(joined.gcrs_from_body, m, k, {q.w, q.x, q.y, q.z});
-    set(joined.attitude_rate_rad_per_s, m, k, {rate.x, rate.y, rate.z});
+    set_column(joined.gcrs_from_body, m, k, {q.w, q.x, q.y, q.z});
+    set_column(joined.attitude_rate_rad_per_s, m, k, rate);
   }
 }
 

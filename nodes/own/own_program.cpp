@@ -15,6 +15,7 @@
 #include "nodes/runtime/process/spawn.h"
 #include "nodes/runtime/transport/socket.h"
 #include "nodes/wire/content_digest.h"
+#include "nodes/wire/own_node.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise {
@@ -62,7 +63,7 @@ OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, 
                 .log_path = settings.log_path,
                 .keep_log = keep_log,
                 .directory = settings.directory,
-                .environment = {"DMISE_OWN_NODE=" + endpoint_->address()},
+                .environment = {std::string(own_node_variable) + "=" + endpoint_->address()},
                 .own_group = true});
   begin.set_schema_version(wire_schema_version);
   begin.set_node(settings.name);

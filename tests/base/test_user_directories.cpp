@@ -35,15 +35,16 @@ class Environment {
   std::string xdg_, home_ = value_of("HOME");
 };
 
-// The XDG Base Directory Specification 0.8: ~/.cache and ~/.local/share where the variable is not
-// set or empty.
+// The XDG Base Directory Specification 0.8: ~/.cache, ~/.local/share and ~/.config where the
+// variable is not set or empty.
 TEST(UserDirectories, AreThoseOfTheDesktopOrOfTheHome) {
   const struct {
     const char* variable;
     std::string (*directory)();
     const char* of_home;
   } cases[] = {{"XDG_CACHE_HOME", cache_directory, "/home/me/.cache/dmise"},
-               {"XDG_DATA_HOME", data_directory, "/home/me/.local/share/dmise"}};
+               {"XDG_DATA_HOME", data_directory, "/home/me/.local/share/dmise"},
+               {"XDG_CONFIG_HOME", config_directory, "/home/me/.config/dmise"}};
   for (const auto& [variable, directory, of_home] : cases) {
     {
       const Environment both(variable, "/var/me", "/home/me");

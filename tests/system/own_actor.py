@@ -208,10 +208,31 @@ def asks_first(binary, directory):
         check("ask.yaml:6:" in said and "walk.py" in said and "--allow-programs" in said, f"{command} asks: {said.strip()[-150:]}")
     dmise(binary, "check", scenario)
     check(not (directory / "never").exists(), "neither they nor check start it")
+    trusts(binary, directory)
     bad = {"node: gnd": "no node of `nodes` has this name, did you mean gnc?"}
     for motion, words in bad.items():
         said = dmise(binary, "check", write(directory, "bad.yaml", motion=f"{{{motion}}}", node=program("walk")), code=2)
         check(words in said and "bad.yaml:5:" in said, said.strip())
+
+
+def trusts(binary, directory):
+    """The user's list of trusted directories is the word of --allow-programs, unless others may write there."""
+    (directory / "home/dmise").mkdir(parents=True, mode=0o755)
+    os.environ["XDG_CONFIG_HOME"] = str(directory / "home")
+    mine = directory / "home/dmise/trusted-directories"
+    mine.write_text(f"# of mine\n{directory}\n")
+    for path in (directory, directory / "home/dmise", mine):
+        path.chmod(0o755)
+    scenario = write(directory, "trusted.yaml", node=program("walk"))
+    for command in ("run", "launch"):
+        dmise(binary, command, scenario, "--out", directory / f"trusted-{command}")
+    directory.chmod(0o775)
+    said = dmise(binary, "run", scenario, "--out", directory / "trusted", code=2)
+    check(f"{mine}:2: does not count: others may write to {directory} (chmod go-w)" in said, said.strip()[-200:])
+    directory.chmod(0o755)
+    mine.write_text("/usr\n")
+    said = dmise(binary, "launch", scenario, "--out", directory / "trusted", code=2)
+    check(f"no line of {mine} is {directory} or above it" in said and said.count("\n") == 1, said.strip()[-200:])
 
 
 def joins(binary, directory):
