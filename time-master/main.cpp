@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "time-master"};
   dmise::MasterOptions options;
   dmise::Tick ticks = 1;
-  std::string report;
+  std::string report, on_silent = "fail";
   double silent_after_s = 5.0, progress_after_s = 900.0, stalled_after_s = 60.0,
          start_within_s = 0.0, rejoin_within_s = 0.0;
   CLI::App app("Runs the clock of one run.", "dmise-time-master");
@@ -49,10 +49,11 @@ int main(int argc, char** argv) {
   const std::map<std::string, dmise::SilentPolicy> policies{{"fail", dmise::SilentPolicy::fail},
                                                             {"wait", dmise::SilentPolicy::wait},
                                                             {"drop", dmise::SilentPolicy::drop}};
-  app.add_option("--on-silent", options.run.on_silent,
+  app.add_option("--on-silent", on_silent,
                  "what a lost node means: fail, wait (for it, or another process of its name) or "
                  "drop (continue without it)")
-      ->transform(CLI::CheckedTransformer(policies));
+      ->capture_default_str()
+      ->check(dmise::one_of({"fail", "wait", "drop"}));
   app.add_option("--rejoin-within", rejoin_within_s,
                  "longest wait for a lost node [s]; 0: no limit")
       ->capture_default_str();
@@ -72,6 +73,7 @@ int main(int argc, char** argv) {
     options.run.stalled_after = dmise::from_seconds(stalled_after_s);
     options.run.start_within = dmise::from_seconds(start_within_s);
     options.run.rejoin_within = dmise::from_seconds(rejoin_within_s);
+    options.run.on_silent = policies.at(on_silent);
     options.keys = flags.keys;
     options.stop = &dmise::stop_signal();
     if (flags.check) return dmise::Coordinator(options.run).over() ? 1 : 0;

@@ -46,6 +46,12 @@ std::optional<Section> section_of(const std::string& card) {
   return Section{x->first, x->second, y->first, y->second};
 }
 
+/// A card with the section of a frame that the sky lit, or of overscan.
+struct SectionCard {
+  const char* key;
+  bool is_light = true;
+};
+
 /// The columns, or the rows, of an image.
 struct Lines {
   int count, length;
@@ -182,19 +188,24 @@ void add_bleeding(const Lines& lines, const Frame& frame, const Background& sky,
 
 void leave_out_overscan(const StandardCards& cards, int columns, int rows,
                         std::vector<double>& values) {
-  for (const char* key : {"TRIMSEC", "DATASEC"}) {
+  const SectionCard kinds[] = {{"TRIMSEC"}, {"DATASEC"}, {"BIASSEC", false}};
+  bool is_told = false;
+  for (const auto& [key, is_light] : kinds) {
     const auto section = section_of(cards.text(key));
-    if (!section) continue;
+    if (!section || (is_told && !is_light)) continue;
+    is_told = true;
     const auto [x0, x1, y0, y1] = *section;
     if (x1 >= columns || y1 >= rows) continue;
     const double share = double(x1 - x0 + 1) * (y1 - y0 + 1) / (double(columns) * rows);
-    if (share == 1.0 || share < 0.5) continue;
+    const double lit = is_light ? share : 1.0 - share;
+    if (lit == 1.0 || lit < 0.5) continue;
     for (int y = 0; y < rows; ++y)
       for (int x = 0; x < columns; ++x)
-        if (x < x0 || x > x1 || y < y0 || y > y1)
+        if ((x >= x0 && x <= x1 && y >= y0 && y <= y1) != is_light)
           values[std::size_t(y) * std::size_t(columns) + std::size_t(x)] = no_value;
-    cards.assumed(formatted("pixels: those outside %s [%.0f:%.0f,%.0f:%.0f] are not used", key,
-                            x0 + 1.0, x1 + 1.0, y0 + 1.0, y1 + 1.0));
+    cards.assumed(formatted("pixels: those %s %s [%.0f:%.0f,%.0f:%.0f] are not used",
+                            is_light ? "outside" : "in", key, x0 + 1.0, x1 + 1.0, y0 + 1.0,
+                            y1 + 1.0));
     return;
   }
 }

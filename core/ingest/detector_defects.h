@@ -8,8 +8,9 @@
 // not used.
 namespace dmise {
 
-/// Those outside TRIMSEC or DATASEC (overscan), if that section is in the frame and half of it or
-/// more; one that is not may be that of the frame before it was cut.
+/// Those outside TRIMSEC or DATASEC, or in BIASSEC if there is neither (overscan), if the section
+/// is in the frame and leaves half of it or more; one that is not may be that of the frame before
+/// it was cut.
 void leave_out_overscan(const StandardCards& cards, int columns, int rows,
                         std::vector<double>& values);
 

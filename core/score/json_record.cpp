@@ -41,8 +41,7 @@ Enum named(const JsonRecord& record, const char* key) {
     for (int k = 0; k < 3; ++k)  // one of two names what is none as the first
       if (std::ranges::find(names, name_of(Enum(k))) == names.end())
         names.emplace_back(name_of(Enum(k)));
-    record.fail(key, "must be one of " + joined(names) + did_you_mean(name, names) + ", got " +
-                         printable(name));
+    record.fail_as_none_of(names, key, name);
   }
   return Enum(value);
 }
@@ -109,6 +108,12 @@ std::vector<double> JsonRecord::numbers_of(const char* key, std::size_t count) c
 
 void JsonRecord::fail(const std::string& key, const std::string& reason) const {
   throw ConfigError(place_ + ": " + key + ": " + reason);
+}
+
+void JsonRecord::fail_as_none_of(const std::vector<std::string>& names, const std::string& key,
+                                 const std::string& got) const {
+  fail(key,
+       "must be one of " + joined(names) + did_you_mean(got, names) + ", got " + printable(got));
 }
 
 bool JsonRecord::has(const char* key) const {

@@ -45,6 +45,9 @@ class JsonRecord {
   /// Number of items of a list.
   std::size_t length(const char* key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
+  /// Fails with what a name may be, and which of them is meant.
+  [[noreturn]] void fail_as_none_of(const std::vector<std::string>& names, const std::string& key,
+                                    const std::string& got) const;
 
  private:
   JsonRecord(std::shared_ptr<const nlohmann::json> object, std::string place);

@@ -1,7 +1,6 @@
 #include "core/score/wcs_record.h"
 
 #include "core/base/error.h"
-#include "core/base/printable.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -16,6 +15,13 @@ Projection projection_of(const JsonRecord& record, const char* key, std::size_t 
   } catch (const Error& error) {
     record.fail(key, error.what());
   }
+}
+
+std::vector<std::string> names_of(const char* Projection::Row::*kind) {
+  std::vector<std::string> names;
+  for (const Projection::Row& row : Projection::rows())
+    if (row.*kind) names.emplace_back(row.*kind);
+  return names;
 }
 
 std::vector<double> polynomial(const JsonRecord& record, const char* key, int order) {
@@ -43,7 +49,7 @@ WcsRefraction refraction_of(const JsonRecord& record) {
   if (record.has("lens")) {
     const std::string name = record.get<std::string>("lens");
     const auto index = Projection::index_of_name(name);
-    if (!index) record.fail("lens", "is unknown, got " + printable(name));
+    if (!index) record.fail_as_none_of(names_of(&Projection::Row::name), "lens", name);
     air.lens = projection_of(record, "lens", *index);
   }
   return air;
@@ -55,7 +61,7 @@ Wcs wcs_of(const JsonRecord& record) {
   std::string code = record.get<std::string>("projection");
   if (code.ends_with("-SIP")) code.resize(code.size() - 4);
   const auto index = Projection::index_of_fits_code(code);
-  if (!index) record.fail("projection", "is unknown, got " + printable(code));
+  if (!index) record.fail_as_none_of(names_of(&Projection::Row::fits_code), "projection", code);
   const auto reference = record.numbers<2>("crpix_px");
   const auto direction = record.numbers<2>("crval_deg");
   Wcs wcs{.projection = projection_of(record, "projection", *index),

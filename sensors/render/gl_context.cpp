@@ -5,6 +5,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/base/printable.h"
 
 namespace dmise {
 
@@ -33,7 +35,9 @@ std::unique_ptr<GlContext> open_gl() {
     if (auto context = open_egl(true)) return context;
     throw Error("DMISE_RENDERER=egl: no OpenGL 4.5 through EGL");
   }
-  if (!wish.empty()) throw Error("DMISE_RENDERER: must be osmesa or egl, got " + std::string(wish));
+  if (!wish.empty())
+    throw Error("DMISE_RENDERER: must be osmesa or egl" + did_you_mean(wish, {"osmesa", "egl"}) +
+                ", got " + printable(wish));
   if (auto context = open_egl()) return context;
   return open_osmesa();
 }

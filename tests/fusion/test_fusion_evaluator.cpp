@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/config/make_clock.h"
 #include "core/orbit/synthetic_catalogue.h"
@@ -173,6 +176,29 @@ TEST(FusionEvaluator, KnowsNoObjectThatIsInNoCatalogue) {
   for (const TrackSet& set : steps(node, run, 0, 5))
     for (const Track& t : set.tracks)
       EXPECT_TRUE(t.catalogue_number != 5 && t.catalogue_number != 7);
+}
+
+/// Variance of position [m^2] of the tracks of each tick, by catalogue number.
+std::map<std::pair<Tick, std::uint32_t>, double> position_variances(const std::string& fusion) {
+  TwoSites run(fusion);
+  FusionEvaluator node(run.scenario, make_clock(run.scenario), run.directory / "out");
+  std::map<std::pair<Tick, std::uint32_t>, double> out;
+  for (const TrackSet& set : steps(node, run, 0, 9))
+    for (const Track& t : set.tracks)
+      out[{set.tick, t.catalogue_number}] = t.covariance[0] + t.covariance[2] + t.covariance[5];
+  return out;
+}
+
+// Detections tell 5 arcsec, and the sensors' pointing is stated to be off by 20 more.
+TEST(FusionEvaluator, AStatedErrorOfPointingIsInTheCovarianceOfTracks) {
+  const auto stated = position_variances("{pointing_sigma_arcsec: 20}");
+  std::vector<double> growth;
+  for (const auto& [track, variance_m2] : position_variances("on"))
+    if (const auto wide = stated.find(track); track.second && wide != stated.end())
+      growth.push_back(wide->second / variance_m2);
+  EXPECT_GT(growth.size(), 50u);
+  EXPECT_GT(*std::ranges::min_element(growth), 1.0);
+  EXPECT_GT(median_of(growth), 4.0);
 }
 
 // The scheduler keeps from what closes a camera's shutter, as far as the scenario does not keep

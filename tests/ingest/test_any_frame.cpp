@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -334,15 +335,18 @@ ForeignImage small_frame(std::mt19937_64& random) {
 // Of processor time, so that a busy machine does not count; without a bound on fitted lengths such
 // frames took minutes.
 TEST(AnyFrame, SmallFramesOfAnyKindAreSearchedInAMoment) {
-  constexpr double most_s = 5.0;
+  constexpr double most_s = 1.0;
+  double worst_s = 0.0;
   std::mt19937_64 random(2);
   for (int i = 0; i < 200; ++i) {
     const ForeignImage image = small_frame(random);
     const std::clock_t begin = std::clock();
     detections_in(read_one(image));
-    EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, most_s)
-        << i << ": " << image.shape[0] << " x " << image.shape[1];
+    const double spent_s = double(std::clock() - begin) / CLOCKS_PER_SEC;
+    EXPECT_LT(spent_s, most_s) << i << ": " << image.shape[0] << " x " << image.shape[1];
+    worst_s = std::max(worst_s, spent_s);
   }
+  RecordProperty("worst_s", std::to_string(worst_s));
 }
 
 TEST(AnyFrame, IsTheSameForAnyNumberOfThreads) {

@@ -58,6 +58,30 @@ TEST(DetectorDefects, OverscanIsNotUsed) {
   }
 }
 
+// The section of the overscan counts where none tells that of the sky.
+TEST(DetectorDefects, WhatIsOverscanIsNotUsed) {
+  const Scene scene = draw(false, 4);
+  ForeignImage image = image_of(scene.counts, all_cards(scene.header));
+  for (int y = 0; y < rows; ++y)
+    for (int x = 460; x < columns; ++x) image.values[std::size_t(y * columns + x)] = 100 + y % 7;
+  image.cards.push_back(card("BIASSEC", "'[461:500,1:400]'"));
+  const Frame frame = read_one(image);
+  EXPECT_EQ(unusable_in(frame, 460, columns - 1), std::size_t(40 * rows));
+  EXPECT_EQ(unusable_in(frame, 0, 459), 0u);
+  EXPECT_THAT(frame.notes.assumed, Contains(HasSubstr("those in BIASSEC [461:500,1:400]")));
+  EXPECT_EQ(detections_in(frame).size(), 2u);
+  image = image_of(scene.counts, all_cards(scene.header));
+  for (const char* text : {"'[101:500,1:400]'", "'[461:501,1:400]'", "'[0:0,0:0]'"}) {
+    image.cards.push_back(card("BIASSEC", text));
+    EXPECT_TRUE(read_one(image).unusable.pixels.empty()) << text;
+    image.cards.pop_back();
+  }
+  // Of the frame before it was cut, as its DATASEC tells.
+  image.cards.push_back(card("DATASEC", "'[41:540,1:400]'"));
+  image.cards.push_back(card("BIASSEC", "'[1:40,1:400]'"));
+  EXPECT_TRUE(read_one(image).unusable.pixels.empty());
+}
+
 // A star of 8 times the full well, whose charge fills its column and falls off beyond.
 TEST(DetectorDefects, ChargeThatFlowedAlongAColumnIsNoStreak) {
   FrameHeader h = simulated::camera_header(columns, rows, focal_px, 0.4, 4, false);

@@ -5,6 +5,7 @@
 #include "core/facets/moonlight.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/moon_disc.h"
+#include "tests/pipeline/shape_scenes.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise::test {
@@ -29,12 +30,9 @@ std::string scene(const Vec<Gcrs>& at_m, const Vec<Gcrs>& eye_m, const std::stri
           "\n" + shape);
 }
 
-double signal_e(const std::string& yaml) {
-  Stage stage(yaml);
-  for (const auto& truth : stage.frame().truths)
-    if (truth.name == "target") return truth.rendered_signal_e;
-  return 0.0;
-}
+Truth truth_of(const std::string& yaml) { return truth_named(Stage(yaml).frame(), "target"); }
+
+double signal_e(const std::string& yaml) { return truth_of(yaml).rendered_signal_e; }
 
 /// Sun and Moon at the start.
 const EnvironmentState& bodies() {
@@ -70,6 +68,21 @@ TEST(MoonlightEffect, LightsSpheresMeshesAndShapesInTheEarthsShadow) {
     EXPECT_NEAR(signal_e(scene(at_m, eye_m, shape, true)) / expected, 1.0, 0.02) << shape;
     EXPECT_EQ(signal_e(scene(at_m, eye_m, shape, false)), 0.0) << shape;
   }
+}
+
+// Between the camera and the Sun, 0.35 deg beside it: a crescent that the Moon makes 4 %
+// brighter. The light drawn and the magnitude in the truth change alike.
+TEST(MoonlightEffect, IsInTheTrueMagnitudeAsInTheLightDrawn) {
+  const Vec<Gcrs> at_m = unit(cross(bodies().sun_m, bodies().moon_m)) * 42164e3;
+  const Vec<Gcrs> to_sun = unit(bodies().sun_m - at_m), to_moon = unit(bodies().moon_m - at_m);
+  const Vec<Gcrs> beside = unit(to_moon - to_sun * dot(to_moon, to_sun));
+  const Vec<Gcrs> eye_m = at_m + unit(beside * std::tan(0.35 * deg) - to_sun) * 1e7;
+  const std::string ball = "    radius_m: 100\n    albedo: 0.8\n";
+  const Truth without = truth_of(scene(at_m, eye_m, ball, false));
+  const Truth with = truth_of(scene(at_m, eye_m, ball, true));
+  EXPECT_GT(with.rendered_signal_e, 1.03 * without.rendered_signal_e);
+  EXPECT_NEAR(without.true_magnitude - with.true_magnitude,
+              2.5 * std::log10(with.rendered_signal_e / without.rendered_signal_e), 2e-3);
 }
 
 TEST(MoonlightEffect, StopsWhereTheEarthIsBeforeTheMoon) {

@@ -9,6 +9,7 @@ are judged in the same way. Fails if one is wrong.
 """
 
 import json
+import math
 import os
 import pathlib
 import re
@@ -167,6 +168,7 @@ class Seen:
     """What the program says of a frame."""
 
     def __init__(self, dmise, path):
+        self.dmise, self.path = dmise, path
         run = subprocess.run([dmise, "detect", str(path), "--catalogue", "none", "--report"], capture_output=True, text=True,
                              timeout=600, check=False)
         self.code, self.notes = run.returncode, run.stderr
@@ -188,6 +190,14 @@ def one_streak(seen):
         return f"{len(seen.found)} detections"
     x, y = seen.found[0]["x_px"], seen.found[0]["y_px"]
     return "" if abs(x - STREAK[0]) < 1 and abs(y - STREAK[1]) < 1 else f"streak at {x:.1f} {y:.1f}"
+
+
+def as_unpadded(seen):
+    """The same noise in electrons, and the same stars."""
+    plain = Seen(seen.dmise, seen.path.with_name("unpadded.fits")).report
+    differ = [f"{key} {seen.report[key]} of {plain[key]}" for key in ("noise_e", "psf_stars", "star_like")
+              if not math.isclose(seen.report[key], plain[key], rel_tol=1e-6)]
+    return one_streak(seen) or ", ".join(differ)
 
 
 def gain_near(least, most):
@@ -239,7 +249,8 @@ def broad(inside):
 
 
 JUDGES = {
-    "plain": one_streak, "mosaic": one_streak, "mosaic-no-gain": gain_near(0.9, 1.1), "unpadded": one_streak, "padded": one_streak,
+    "plain": one_streak, "mosaic": one_streak, "mosaic-no-gain": gain_near(0.9, 1.1),
+    "unpadded": one_streak, "padded": as_unpadded,
     "degree": names_card("CCD-TEMP"), "accent": names_card("OBSERVER"), "tab": names_card("HISTORY"), "nul": names_card("COMMENT"),
     "complex": one_streak, "ruler": one_streak, "long-number": one_streak, "unpadded-file": one_streak, "zero-block": one_streak,
     "offset": start_is("2018-01-21T01:02:00.317"), "two-cards": start_is("2018-01-21T01:02:00.25"),

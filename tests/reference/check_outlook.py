@@ -11,6 +11,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -251,6 +252,16 @@ def limits(binary, directory):
     completeness(binary, directory, crossing, "streaks, bright sky", streak, 0.8, 18.0, 1, 5)
 
 
+def definitions(binary, directory):
+    """What check prints of a sensor says of which light its limits are."""
+    done = subprocess.run([binary, "check", write(directory, scenario_of([crossing(random.Random(1), 0, 1.0)], 1.0, 21.9, 1, 1))],
+                          capture_output=True, text=True, check=True)
+    point, streak = (re.search(words, done.stdout) for words in
+                     (r"limiting magnitude V = [\d.]+ \(a point at .*\)", r"half of the streaks .* px, by their whole light\)"))
+    check(point and streak and "in a pixel" not in done.stdout, f"limits are defined: {streak and streak[0]}")
+    check(" 1 sensor, " in done.stdout and " 1 object, " in done.stdout, done.stdout.splitlines()[-1])
+
+
 def warned(binary, directory):
     """Each slip that is asked about is warned of, and a good scenario is not."""
     good = (simulation("2018-01-21T00:15:00Z", duration_s=20) + "objects: [{name: thing, motion: {two_body: "
@@ -279,5 +290,5 @@ def warned(binary, directory):
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory(prefix="dmise-test-") as folder:
         program = str(pathlib.Path(sys.argv[1]).resolve())
-        for test in (fields_of_view, elevations, warned, counts, limits):
+        for test in (fields_of_view, elevations, definitions, warned, counts, limits):
             test(program, pathlib.Path(folder))

@@ -1,6 +1,7 @@
 """Passes of satellites over Atlanta by skyfield, for tests/visibility/test_passes.cpp.
 
-Usage: passes.py launch/catalogues/demo.tle. UT1 is taken for UTC, as without an Earth orientation file. Events are
+Usage: passes.py launch/catalogues/demo.tle [--after-a-leap-second]. With it the elements are those of 2016-12-31T06:00:00, and the
+day is the next: skyfield counts from their epoch in days of 86,400 s, so it is given one a second earlier. UT1 is taken for UTC, as without an Earth orientation file. Events are
 skyfield's `find_events` at 10 deg of elevation over a day, each then found to 1 ms by bisection of skyfield's own
 altitude. A row: catalogue number; rise, culmination and set [s from the start], elevation [rad], azimuth
 [rad], range [m] and angular rate in the horizon's axes [rad/s, over half a second] at the culmination; when skyfield's `is_sunlit` (a point-like Sun, here by ERFA, and a
@@ -11,15 +12,17 @@ from types import SimpleNamespace
 
 import erfa
 import numpy as np
+from sgp4.api import WGS72, Satrec
 from skyfield.api import EarthSatellite, load, wgs84
 from skyfield.constants import AU_M
 
 MASK_DEG = 10.0
 NUMBERS = [25544, 20580, 27386, 27376, 27704, 17589, 41572, 36119, 42707, 42705, 42728, 43054]
+LEAP = "--after-a-leap-second" in sys.argv
 
 ts = load.timescale(delta_t=69.184, builtin=True)  # TT - UTC from 2017 on
 site = wgs84.latlon(33.777, -84.398, elevation_m=300.0)
-start = ts.utc(2018, 1, 21)
+start = ts.utc(2017, 1, 1) if LEAP else ts.utc(2018, 1, 21)
 
 
 class SunFromEarth:
@@ -54,15 +57,25 @@ def bisect(test, a, b):
     return 0.5 * (a + b)
 
 
+def before_the_leap(sat):
+    """A satellite with these elements at 2016-12-31T06:00:00."""
+    moved = Satrec()
+    moved.sgp4init(WGS72, "i", sat.satnum, 2457753.75 - 1 / 86400 - 2433281.5, sat.bstar, sat.ndot, sat.nddot, sat.ecco, sat.argpo,
+                   sat.inclo, sat.mo, sat.no_kozai, sat.nodeo)
+    return EarthSatellite.from_satrec(moved, ts)
+
+
 with open(sys.argv[1]) as catalogue:
     lines = [line.rstrip() for line in catalogue if not line.startswith("#")]
 elements = {int(two[2:7]): (name, one, two) for name, one, two in zip(lines[::3], lines[1::3], lines[2::3])}
 
-for number in NUMBERS:
+for number in NUMBERS[:3] if LEAP else NUMBERS:
     if number not in elements:
         sys.exit(f"no {number} in the catalogue")
     name, one, two = elements[number]
     satellite = EarthSatellite(one, two, name, ts)
+    if LEAP:
+        satellite = before_the_leap(satellite.model)
     pair = satellite - site
     times, events = satellite.find_events(site, start, after(86400), altitude_degrees=MASK_DEG)
     seconds = [((t.whole - start.whole) + (t.tt_fraction - start.tt_fraction)) * 86400 for t in times]

@@ -205,6 +205,12 @@ TEST(Scene, EglWithoutASurfaceDrawsWhatOsmesaDraws) {
   EXPECT_EQ(egl.digest, drawn_with("DMISE_RENDERER=osmesa").digest);
 }
 
+TEST(Scene, ARendererThatThereIsNotHasASuggestion) {
+  const std::string said = drawn_with("DMISE_RENDERER=osmessa").by;
+  EXPECT_NE(said.find("must be osmesa or egl, did you mean osmesa?, got osmessa"), said.npos)
+      << said;
+}
+
 TEST(Scene, RefusesWhatItCannotDraw) {
   ExpectedElectronImage image(10, 10);
   const ScenePoint point{5, 5, 1};

@@ -6,6 +6,9 @@
 #include <memory>
 
 #include "core/base/text_file.h"
+#include "dmise/v1/node.pb.h"
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/master_link/master_link.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/until_lost.h"
@@ -220,6 +223,15 @@ TEST(Processes, AHungStepIsNamedByItsProgressDeadline) {
   stack.start("a", {"--hang-at", "7"});
   EXPECT_TRUE(stack.master->says("a has made no progress for ")) << stack.master->output();
   stack.expect_all_exit(1);  // the hung one too: its process ends itself
+}
+
+TEST(Processes, AHungStepIsNamedAfterAQuarterOfAnHourUnlessItIsSaidOtherwise) {
+  const Stack stack({"--ticks", "10"});
+  zmq::context_t context(1);
+  MasterLink link(context, stack.address, nullptr);
+  v1::Join join;
+  join.set_name("orbit");
+  EXPECT_EQ(link.join(join, std::chrono::seconds(60)).progress_after_s(), 900.0);
 }
 
 TEST(Processes, TheMasterSaysWhoIsMissing) {

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -8,6 +9,10 @@
 
 namespace dmise {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 FrameReport report_of(const Wcs& wcs) {
   FrameReport report{.sensor = "eye", .frame = 1};
@@ -63,6 +68,23 @@ TEST(WcsRecord, RefusesWhatIsNone) {
     std::string bad = good;
     bad.replace(bad.find(from), std::string(from).size(), to);
     EXPECT_THROW(wcs_of(JsonRecord(bad, "F:1")), ConfigError) << bad;
+  }
+}
+
+TEST(WcsRecord, NamesOfProjectionsHaveASuggestion) {
+  const std::string good =
+      R"({"projection":"TAN","crpix_px":[1,2],"crval_deg":[0,0],"cd_deg_per_px":[1,0,0,1],"order":0,"rms_px":0,"max_px":0,)"
+      R"("refraction":{"zenith":[0,0,1],"offset_px":[0,0],"focal_length_px":500,"pressure_hpa":1000,)"
+      R"("temperature_c":10,"humidity":0.5,"wavelength_um":0.55,"cell_px":8,"lens":"equidistant"}})";
+  EXPECT_NO_THROW(wcs_of(JsonRecord(good, "F:1")));
+  for (const auto& [right, wrong] :
+       {std::pair("TAN", "TNA"), std::pair("equidistant", "equidistent")}) {
+    std::string bad = good;
+    bad.replace(bad.find(right), std::string(right).size(), wrong);
+    EXPECT_THAT(
+        [&] { wcs_of(JsonRecord(bad, "F:1")); },
+        ThrowsMessage<ConfigError>(AllOf(HasSubstr("did you mean " + std::string(right) + "?"),
+                                         HasSubstr("got " + std::string(wrong)))));
   }
 }
 

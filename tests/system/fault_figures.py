@@ -2,8 +2,8 @@
 
     fault_figures.py FIGURES.jsonl
 
-The lines are those that faults.py, deaths.py, soak.py and tests/fuzz/run.sh append with --json; lines of schedules
-are added up.
+The lines are those that faults.py, schedules.py, deaths.py, soak.py and tests/fuzz/run.sh append with --json; lines of
+schedules are added up.
 """
 
 import datetime
@@ -32,6 +32,12 @@ def schedules_text(lines):
             f"taken up again; {failed} did what they should not.")
 
 
+def resumption_text(lines):
+    failed = [number for line in lines for number in line["failed"]]
+    return (f"- {sum(line['value'] for line in lines)} random schedules with fusion, agents, keys, full disks and resumption (seed "
+            f"{', '.join(sorted({str(line['seed']) for line in lines}))}): {len(failed)} did what they should not.")
+
+
 def deaths_text(line):
     kinds = ", ".join(f"{line[k]} {k}" for k in KINDS if k in line)
     return (f"- {line['named_in_time']} of {line['trials']} deaths ({kinds}) named within {line['target']:g} s: "
@@ -55,6 +61,7 @@ def main():
     lines = [json.loads(line) for line in pathlib.Path(sys.argv[1]).read_text().splitlines()]
     named = lambda name: [line for line in lines if line["name"] == name]
     parts = [schedules_text(named("fault_schedules"))] if named("fault_schedules") else []
+    parts += [resumption_text(named("schedules"))] if named("schedules") else []
     parts += [deaths_text(line) for line in named("death_named_worst_s")[-1:]]
     parts += [soak_text(line) for line in named("soak_growth_worst")[-1:]]
     if named("fuzz"):

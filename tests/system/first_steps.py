@@ -51,12 +51,18 @@ def suggestions(binary, scenario):
     for wrong, meant in ((("chek",), "check"), (("run", scenario, "--thread", "2"), "--threads"),
                          (("launch", scenario, "--host", "2"), "--hosts"), (("list", "camera"), "cameras"),
                          (("clock", "paus"), "pause"), (("bench", "fram"), "frame"),
-                         (("visible", scenario, "--sunlight"), "--sunlit")):
+                         (("visible", scenario, "--sunlight"), "--sunlit"), (("launch", scenario, "--log-format", "txt"), "text"),
+                         (("catalogue", "states", "demo", "--at", "2018-01-21T00:00:00Z", "--frame", "tmee"), "teme")):
         code, _, said = call(binary, *wrong)
         check(code == 2 and f"did you mean {meant}?" in said and "\n" not in said, f"{wrong[0]}: {said}")
     for program in PROGRAMS:
         code, _, said = call(binary.parent / f"dmise-{program}", "--log-levl", "info")
         check(code == 2 and "did you mean --log-level?" in said and "\n" not in said, said)
+    master = binary.parent / "dmise-time-master"
+    for option, wrong, meant in (("--log-level", "wraning", "warning"), ("--log-format", "jsno", "json"),
+                                 ("--on-silent", "wiat", "wait")):
+        code, _, said = call(master, "--expect", "a", option, wrong)
+        check(code == 2 and f"did you mean {meant}?" in said and "\n" not in said, said)
 
 
 def addresses(binary, directory, scenario):

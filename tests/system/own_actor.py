@@ -163,6 +163,8 @@ def node_dies(binary, directory):
         code, _ = run.finish()
         check(code == 0, f"the node killed, and started again: code {code} {run.stderr[-300:] if code else ''}")
         run.nothing_left()
+    waited_for_s = json.loads((directory / "slow/logs/master.json").read_text())["waited_for_s"]
+    check(max(waited_for_s, key=waited_for_s.get) == "gnc", f"the clock waited for the slow node, and tells so: {waited_for_s}")
     check_like(directory / "slow", directory / "immortal-walk", "the products are those of an undisturbed run")
 
 

@@ -79,11 +79,12 @@ def another_pace_changes_nothing(binary, directory):
         subprocess.run([binary, "clock", "go-on", master], check=True, capture_output=True)
         done = subprocess.run([binary, "clock", "pace", master, "-1"], capture_output=True, text=True)
         check(done.returncode == 2, f"a pace that is none is refused: {done.stderr.strip().splitlines()[0]}")
-        subprocess.run([binary, "clock", "pace", master, "0"], check=True, capture_output=True)
+        for pace in ("0.005", "0"):
+            subprocess.run([binary, "clock", "pace", master, pace], check=True, capture_output=True)
         code, _ = run.finish()
         check(code == 0, "as fast as possible it ends" + (run.stderr[-300:] if code else ""))
     log = (paced / "logs/time-master.log").read_text()
-    for asked in ("step 2 ticks", "go on", "run as fast as possible"):
+    for asked in ("step 2 ticks", "go on", "keep a pace of 0.005 times real time", "run as fast as possible"):
         check(f"asked to {asked}" in log, f"the log of the clock says that it was asked to {asked}")
     check_same(paced, whole, "and its products are those of any other pace")
 
