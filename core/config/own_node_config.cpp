@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -93,6 +95,25 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
+/// Whether an argument is the name of a script, as people call theirs.
+bool names_script(const std::string& word) {
+  constexpr std::array endings{".py", ".sh", ".jl", ".js", ".jar", ".lua", ".m", ".pl", ".rb"};
+  return !word.starts_with('-') &&
+         std::ranges::any_of(endings, [&](const char* ending) { return word.ends_with(ending); });
+}
+
+std::vector<std::string> read_run(const YamlValue& run, const std::string& directory) {
+  std::vector<std::string> words;
+  for (const YamlValue& word : run.list()) {
+    words.push_back(word.text());
+    if (words.size() > 1 && names_script(words.back()) &&
+        !is_file(fs::path(directory) / words.back()))
+      word.fail("there is no such file in " + directory);
+  }
+  if (words.empty()) run.fail("needs a program", false);
+  return words;
+}
+
 OwnNode read_own_node(const YamlValue& value) {
   YamlMap map(value, own_node_section());
   OwnNode node{.where = value.place()};
@@ -106,8 +127,7 @@ OwnNode read_own_node(const YamlValue& value) {
   if (bool(run) == elsewhere) value.fail("give either run or elsewhere: on", false);
   if (run) {
     node.run_where = run->place();
-    for (const YamlValue& word : run->list()) node.run.push_back(word.text());
-    if (node.run.empty()) run->fail("needs a program", false);
+    node.run = read_run(*run, node.directory);
     if (program_of(node).empty()) run->list()[0].fail("there is no such program");
   }
   return node;

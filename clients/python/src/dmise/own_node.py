@@ -135,7 +135,7 @@ class _Conversation:
                 frames = self._step(request.step, more[0])
         except Exception as error:
             traceback.print_exc()
-            self._send([protocol.OwnNodeAnswer(failed=_text_of(error)).SerializeToString()])
+            self._send([protocol.OwnNodeAnswer(failed=_text_of(error, self._served)).SerializeToString()])
             raise _Failed from error
         self._send(frames)
 
@@ -202,10 +202,9 @@ async def _result_of(said: Any) -> Any:
     return await said
 
 
-def _text_of(error: Exception) -> str:
-    """"ValueError: no orbit (gnc.py:12)": the last line that is not of this package."""
+def _text_of(error: Exception, served: Served) -> str:
+    """"ValueError: no orbit (gnc.py:12)": the last line that is not of this package, else where the model is defined."""
     here = os.path.dirname(__file__)
-    lines = [frame for frame in traceback.extract_tb(error.__traceback__)
-             if os.path.dirname(frame.filename) != here]
-    place = f" ({os.path.basename(lines[-1].filename)}:{lines[-1].lineno})" if lines else ""
-    return f"{type(error).__name__}: {error}{place}"
+    lines = [f"{os.path.basename(frame.filename)}:{frame.lineno}" for frame in traceback.extract_tb(error.__traceback__)
+             if os.path.dirname(frame.filename) != here] or served.places()
+    return f"{type(error).__name__}: {error}" + (f" ({lines[-1]})" if lines else "")
