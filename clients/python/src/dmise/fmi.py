@@ -128,7 +128,6 @@ def source(name: str, t_s: float, world: World, own: Mapping[str, Floats]) -> fl
     return float(direction[AXES.index(axis)] / np.linalg.norm(direction))
 
 
-@actor()
 class Model:
     """The unit of the command line. Inputs of a step are those of its beginning; before the first one those that need no state of its
     own are given, the others are as the unit starts."""
@@ -178,4 +177,4 @@ class Model:
 
 
 if __name__ == "__main__":
-    serve(Model)
+    serve(actor()(Model))
