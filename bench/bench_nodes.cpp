@@ -8,15 +8,23 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <span>
 #include <sstream>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "bench/children.h"
 #include "bench/figure.h"
 #include "core/base/error.h"
+#include "core/base/instant.h"
+#include "core/base/sim_time.h"
 #include "core/base/text_file.h"
 #include "core/sim/message.h"
 #include "core/sim/participant.h"
+#include "core/sim/state.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/process/last_line.h"
 #include "nodes/runtime/process/monotonic_clock.h"

@@ -1,5 +1,6 @@
-"""A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that moves or turns an object: `nodes: [{name: gnc, fmu: gnc.fmu, ..}]` of a
-scenario starts `python3 -m dmise.fmi gnc.fmu` (docs/howto/plug-in-a-model.md). Needs FMPy: pip install "dmise[fmi]".
+"""A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that moves or turns an object.
+
+`nodes: [{name: gnc, fmu: gnc.fmu, ..}]` of a scenario starts `python3 -m dmise.fmi gnc.fmu` (docs/howto/plug-in-a-model.md). Needs FMPy: pip install "dmise[fmi]".
 """
 from __future__ import annotations
 
@@ -114,8 +115,10 @@ def needed_by(name: str) -> set[str]:
 
 
 def source(name: str, t_s: float, world: World, own: Mapping[str, Floats]) -> float:
-    """What an input is given ("sun_body_x"): at t_s, with the object's own state as the FMU said it. Without a position the directions
-    of Sun and Moon are from the Earth's centre."""
+    """What an input is given ("sun_body_x"): at t_s [s], with the object's own state as the FMU said it, in SI units.
+
+    Without a position the directions of Sun and Moon are from the Earth's centre.
+    """
     if name == "time_s":
         return t_s
     what, *frame, axis = name.removesuffix("_m_per_s").removesuffix("_m").split("_")
@@ -129,8 +132,10 @@ def source(name: str, t_s: float, world: World, own: Mapping[str, Floats]) -> fl
 
 
 class Model:
-    """The unit of the command line. Inputs of a step are those of its beginning; before the first one those that need no state of its
-    own are given, the others are as the unit starts."""
+    """The unit of the command line. Inputs of a step are those of its beginning.
+
+    Before the first one those that need no state of its own are given; the others are as the unit starts.
+    """
 
     def __init__(self) -> None:
         self._unit = Unit(sys.argv[1])

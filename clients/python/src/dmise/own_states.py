@@ -56,7 +56,7 @@ class StatesWriter:
             self._arrays["attitude_object"][:] = self._turned
 
     def frames(self, said: Any, tick: int, time_ns: int) -> list[bytes]:
-        """ObjectStates of what the model said, and their arrays. Raises TypeError or ValueError if they are not of its objects."""
+        """ObjectStates of what the model said, and their arrays. Raises TypeError or ValueError if it is no such thing."""
         count = len(self._names)
         code = self._arrays["code"]
         code[:] = 0
