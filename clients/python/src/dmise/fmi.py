@@ -1,6 +1,7 @@
 """A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that moves or turns an object.
 
-`nodes: [{name: gnc, fmu: gnc.fmu, ..}]` of a scenario starts `python3 -m dmise.fmi gnc.fmu` (docs/howto/plug-in-a-model.md). Needs FMPy: pip install "dmise[fmi]".
+`nodes: [{name: gnc, fmu: gnc.fmu, ..}]` of a scenario starts `python3 -m dmise.fmi gnc.fmu` (docs/howto/plug-in-a-model.md). Needs
+FMPy: pip install "dmise[fmi]".
 """
 from __future__ import annotations
 
