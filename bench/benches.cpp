@@ -11,6 +11,7 @@
 #include "bench/bench_fusion_tick.h"
 #include "bench/bench_interpolation.h"
 #include "bench/bench_network.h"
+#include "bench/bench_nodes.h"
 #include "bench/bench_render.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_sky.h"
@@ -39,6 +40,7 @@ std::vector<Bench> benches() {
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"network", "number of sensor processes that keep up with real time, and their memory",
        bench_network, add_network_options},
+      {"nodes", "ticks of runs with actors in Python", bench_nodes},
       {"render", "pictures and light of objects with a shape", bench_render},
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},

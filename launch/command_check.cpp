@@ -160,6 +160,18 @@ void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
   json.end_object();
 }
 
+/// What is known of paths between ticks: of element sets by measurement, of a node's objects not.
+void print_interpolation(const Scenario& scenario) {
+  std::printf("objects between ticks: %s\n",
+              interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
+  for (const OwnNode& node : scenario.own_nodes)
+    if (!node.detects)
+      std::printf(
+          "objects of %s between ticks: cubics join states %g s apart, by an error that "
+          "depends on the node; the run notes more than 1 m\n",
+          node.name.c_str(), double(node.period_ticks) * scenario.tick.seconds());
+}
+
 void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool has_stars) {
   for (const auto& note : outlook.notes) std::printf("note: %s\n", printable(note, 4000).c_str());
   for (const auto& sensor : outlook.sensors) {
@@ -172,9 +184,7 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool h
                   sensor.sensor.c_str());
   }
   print_effects(scenario, has_stars);
-  if (outlook.objects > 0)
-    std::printf("objects between ticks: %s\n",
-                interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
+  if (outlook.objects > 0) print_interpolation(scenario);
   for (const auto& warning : outlook.warnings)
     std::printf("warning: %s\n", printable(warning, 4000).c_str());
   const std::size_t warnings = outlook.warnings.size();

@@ -2,9 +2,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
@@ -31,6 +34,41 @@ const Section& options_section() {
   return section;
 }
 
+/// What an input of an FMU can be given: names that `dmise.fmi` of the Python package knows.
+std::vector<std::string> fmu_sources() {
+  std::vector<std::string> names{"time_s"};
+  for (const std::string axis : {"x", "y", "z"}) {
+    names.push_back("position_" + axis + "_m");
+    names.push_back("velocity_" + axis + "_m_per_s");
+    for (const std::string body : {"sun_", "moon_", "earth_"})
+      for (const std::string frame : {"gcrs_", "body_"}) names.push_back(body + frame + axis);
+  }
+  return names;
+}
+
+const Section& fmu_inputs_section() {
+  static const Section section{
+      "fmu_inputs",
+      "Input variables of an FMU, and what each is given at the beginning of a step.",
+      {},
+      optional("^.+$", form::choice(fmu_sources()),
+               "Seconds since the start, a component of the object's own position or velocity, or "
+               "of the direction of Sun, Moon or Earth from it, in axes of GCRS or of its body.")};
+  return section;
+}
+
+const Section& fmu_outputs_section() {
+  const auto names = [] { return form::list(form::text(), 1); };
+  static const Section section{
+      "fmu_outputs",
+      "Output variables of an FMU that say where its object is.",
+      {optional("position_m", names(), "x, y, z of the position in GCRS [m]."),
+       optional("velocity_m_per_s", names(), "x, y, z of the velocity in GCRS [m/s]."),
+       optional("gcrs_from_body", names(), "w, x, y, z of the attitude, a unit quaternion."),
+       optional("rate_rad_per_s", names(), "x, y, z of the angular velocity in GCRS [rad/s].")}};
+  return section;
+}
+
 const Section& own_node_section() {
   static const Section section{
       "node",
@@ -39,6 +77,12 @@ const Section& own_node_section() {
        optional("run", form::list(form::text(), 1),
                 "Program and arguments. It runs in the directory of the scenario, and only with "
                 "`--allow-programs` or in a trusted directory."),
+       optional("fmu", form::text(),
+                "A Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that moves or turns one "
+                "object. The Python package runs it, with FMPy, and only with "
+                "`--allow-programs` or in a trusted directory."),
+       optional("inputs", form::map(fmu_inputs_section), "What the FMU is given."),
+       optional("outputs", form::map(fmu_outputs_section), "What the FMU says."),
        optional("elsewhere", form::flag(),
                 "The program is started by whoever joins it, with `dmise join SCENARIO NAME "
                 "--program`.",
@@ -47,7 +91,10 @@ const Section& own_node_section() {
                 "Ticks between those for which the program is asked for states. Cubics join the "
                 "others.",
                 "1"),
-       optional("options", form::map(options_section), "What the program is told as it begins.")}};
+       optional(
+           "options", form::map(options_section),
+           "What the program is told as it begins; of an FMU the numbers with which its parameters "
+           "and variables start.")}};
   return section;
 }
 
@@ -94,24 +141,83 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
+/// Whether an argument is the name of a script, as people call theirs.
+bool names_script(const std::string& word) {
+  constexpr std::array endings{".py", ".sh", ".jl", ".js", ".jar", ".lua", ".m", ".pl", ".rb"};
+  return !word.starts_with('-') &&
+         std::ranges::any_of(endings, [&](const char* ending) { return word.ends_with(ending); });
+}
+
+std::vector<std::string> read_run(const YamlValue& run, const std::string& directory) {
+  std::vector<std::string> words;
+  for (const YamlValue& word : run.list()) {
+    words.push_back(word.text());
+    if (words.size() > 1 && names_script(words.back()) &&
+        !is_file(fs::path(directory) / words.back()))
+      word.fail("there is no such file in " + directory);
+  }
+  if (words.empty()) run.fail("needs a program", false);
+  return words;
+}
+
+std::vector<std::string> read_fmu(const YamlValue& fmu, const std::string& directory) {
+  if (!is_file(fs::path(directory) / fmu.text())) fmu.fail("there is no such file in " + directory);
+  return {"python3", "-m", "dmise.fmi", fmu.text()};
+}
+
+void write_inputs(JsonWriter& json, const YamlValue& value) {
+  YamlMap map(value, fmu_inputs_section());
+  for (const std::string& name : map.keys()) json.field(name, map.require(name).choice());
+  map.done();
+}
+
+void write_outputs(JsonWriter& json, const YamlValue& value) {
+  YamlMap map(value, fmu_outputs_section());
+  for (const auto& [key, count] :
+       {std::pair("position_m", 3u), std::pair("velocity_m_per_s", 3u),
+        std::pair("gcrs_from_body", 4u), std::pair("rate_rad_per_s", 3u)}) {
+    const auto names = map.find(key);
+    if (!names) continue;
+    std::vector<std::string> variables;
+    for (const YamlValue& name : names->list()) variables.push_back(name.text());
+    if (variables.size() != count)
+      names->fail("must be " + std::to_string(count) + " names of variables", false);
+    json.list(key, variables);
+  }
+  map.done();
+}
+
+/// What `dmise.fmi` is told: the tables of the node, and its options.
+std::string fmu_json(YamlMap& map, const std::string& options) {
+  JsonWriter json;
+  json.begin_object().key("inputs").begin_object();
+  if (const auto inputs = map.find("inputs")) write_inputs(json, *inputs);
+  json.end_object().key("outputs").begin_object();
+  write_outputs(json, map.require("outputs"));
+  json.end_object().key("options").raw(options);
+  return json.end_object().take();
+}
+
 OwnNode read_own_node(const YamlValue& value) {
   YamlMap map(value, own_node_section());
   OwnNode node{.where = value.place()};
   node.name = map.require("name").text();
   node.directory = fs::absolute(value.file()).parent_path().string();
   const auto run = map.find("run");
+  const auto fmu = map.find("fmu");
   const bool elsewhere = map.flag_or("elsewhere", false);
   node.period_ticks = map.integer_or("period_ticks", 1);
   if (const auto options = map.find("options")) node.options_json = read_options(*options);
+  if (fmu) node.options_json = fmu_json(map, node.options_json);
   map.done();
-  if (bool(run) == elsewhere) value.fail("give either run or elsewhere: on", false);
-  if (run) {
-    node.run_where = run->place();
-    for (const YamlValue& word : run->list()) node.run.push_back(word.text());
-    if (node.run.empty()) run->fail("needs a program", false);
-    if (program_of(node).empty()) run->list()[0].fail("there is no such program");
-  }
-  return node;
+  if (int(bool(run)) + int(bool(fmu)) + int(elsewhere) != 1)
+    value.fail("give either run or fmu or elsewhere: on", false);
+  if (elsewhere) return node;
+  node.run_where = (run ? run : fmu)->place();
+  node.run = run ? read_run(*run, node.directory) : read_fmu(*fmu, node.directory);
+  if (!program_of(node).empty()) return node;
+  if (run) run->list()[0].fail("there is no such program");
+  fmu->fail("needs python3 on the PATH");
 }
 
 }  // namespace

@@ -11,8 +11,10 @@
 namespace dmise {
 namespace {
 
-constexpr Tick checkpoint_every = 64;      // calls
-constexpr std::size_t calls_held = 3;      // for joining two, and for the error between three
+constexpr Tick checkpoint_every = 64;          // calls
+constexpr Tick max_ahead = 16;                 // calls
+constexpr std::size_t states_ahead = 100'000;  // of objects: 7 MB
+constexpr std::size_t calls_held = 3;          // for joining two, and for the error between three
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
 
 bool is_turned_by(const OwnNode& node, const OwnObject& object) {
@@ -23,6 +25,13 @@ bool is_turned_by(const OwnNode& node, const OwnObject& object) {
 bool is_moved_by(const OwnNode& node, const OwnObject& object) {
   const NodeMotion* motion = motion_by_node(object);
   return motion && motion->node == node.name;
+}
+
+/// Number of calls that the program may be asked for before it has answered. A run that keeps time
+/// asks for each when it is due.
+Tick calls_ahead(const Scenario& scenario, std::size_t objects) {
+  if (scenario.network.real_time > 0.0) return 0;
+  return std::clamp<Tick>(Tick(states_ahead / std::max<std::size_t>(objects, 1)), 1, max_ahead);
 }
 
 std::string list_text(std::span<const std::uint32_t> numbers) {
@@ -56,7 +65,7 @@ std::vector<std::string> OwnActor::produces() const { return {actor_prefix + nod
 std::vector<Message> OwnActor::step(Tick tick, std::span<const Message>) {
   const Tick call = tick / node_.period_ticks;
   const bool between = tick % node_.period_ticks != 0;
-  if (!ask_up_to(between ? call + 1 : call)) return {};
+  if (!hear_up_to(between ? call + 1 : call)) return {};
   ObjectStates states =
       between ? joined_states(states_of(call), states_of(call + 1), tick, scenario_.time_of(tick))
               : states_of(call);
@@ -69,11 +78,11 @@ const ObjectStates& OwnActor::states_of(Tick call) const {
   return *std::ranges::find(held_, tick_of(call), &ObjectStates::tick);
 }
 
-bool OwnActor::ask_up_to(Tick call) {
+bool OwnActor::hear_up_to(Tick call) {
   const auto is_held = [&] { return !held_.empty() && held_.back().tick >= tick_of(call); };
   while (!is_held()) {
     try {
-      if (!ask()) return false;
+      if (!hear()) return false;
     } catch (const ProgramLost& lost) {
       program_.reset();
       restarts_.after(lost, "tick " + std::to_string(tick_of(next_call_)));
@@ -86,26 +95,51 @@ bool OwnActor::ask_up_to(Tick call) {
   return true;
 }
 
-bool OwnActor::ask() {
+bool OwnActor::hear() {
   if (!program_) start();
-  const Tick tick = tick_of(next_call_);
-  v1::OwnNodeStep step;
-  step.set_tick(tick);
-  step.set_time_ns(scenario_.time_of(tick).ns);
-  step.set_give_checkpoint(next_call_ % checkpoint_every == checkpoint_every - 1);
-  const EnvironmentState environment = environment_at(clock_, tick, scenario_.time_of(tick));
-  auto stepped = program_->step(step, environment);
+  if (!ask()) return false;
+  auto stepped = program_->stepped();
   if (!stepped) return false;
   check(stepped->states);
-  look_at_places(stepped->states, environment.earth);
+  look_at_places(stepped->states, asked_.front().earth);
   require_same(stepped->digest);
   if (stepped->checkpoint) checkpoint_ = {next_call_, std::move(*stepped->checkpoint)};
-  ++next_call_;
+  asked_.pop_front();
+  const Tick tick = tick_of(next_call_++);
   if (!held_.empty() && held_.back().tick >= tick) return true;  // said before
   held_.push_back(std::move(stepped->states));
   if (held_.size() > calls_held) held_.pop_front();
   look_at_errors();
   return true;
+}
+
+bool OwnActor::ask() {
+  if (asked_.empty()) {
+    asked_.push_back(environment_of(next_call_));
+    if (!program_->ask(step_of(next_call_), asked_.back())) return false;
+  }
+  const Tick ahead = calls_ahead(scenario_, objects_.size());
+  if (Tick(asked_.size()) > ahead / 2) return true;  // the next ones go together
+  const Tick last = (scenario_.last_tick() + node_.period_ticks - 1) / node_.period_ticks;
+  for (Tick call = next_call_ + Tick(asked_.size()); call <= std::min(next_call_ + ahead, last);
+       ++call) {
+    EnvironmentState environment = environment_of(call);
+    if (!program_->ask_ahead(step_of(call), environment)) break;
+    asked_.push_back(std::move(environment));
+  }
+  return true;
+}
+
+v1::OwnNodeStep OwnActor::step_of(Tick call) const {
+  v1::OwnNodeStep step;
+  step.set_tick(tick_of(call));
+  step.set_time_ns(scenario_.time_of(tick_of(call)).ns);
+  step.set_give_checkpoint(call % checkpoint_every == checkpoint_every - 1);
+  return step;
+}
+
+EnvironmentState OwnActor::environment_of(Tick call) const {
+  return environment_at(clock_, tick_of(call), scenario_.time_of(tick_of(call)));
 }
 
 v1::OwnNodeBegin OwnActor::begin() const {
@@ -123,6 +157,7 @@ v1::OwnNodeBegin OwnActor::begin() const {
 
 void OwnActor::start() {
   next_call_ = checkpoint_ ? checkpoint_->call + 1 : 0;
+  asked_.clear();
   program_.emplace(program_settings(scenario_, node_, settings_), begin(), restarts_.any());
 }
 

@@ -30,9 +30,13 @@ class OwnActor : public Actor {
     Tick call = 0;
     std::string bytes;
   };
-  /// Asks for the states of all calls up to this one that it has not; false after the stop.
-  bool ask_up_to(Tick call);
+  /// Hears the states of all calls up to this one that it has not; false after the stop.
+  bool hear_up_to(Tick call);
+  bool hear();
+  /// Asks for the next calls, several at once, so that neither waits for the other at each tick.
   bool ask();
+  v1::OwnNodeStep step_of(Tick call) const;
+  EnvironmentState environment_of(Tick call) const;
   void start();
   void check(const ObjectStates& states) const;
   void require_same(std::uint64_t digest);
@@ -49,7 +53,8 @@ class OwnActor : public Actor {
   std::vector<const OwnObject*> objects_;  // in the scenario's order
   std::vector<std::uint32_t> turned_;      // of these, by index
   std::optional<OwnProgram> program_;
-  Tick next_call_ = 0;                  // of the program
+  Tick next_call_ = 0;                  // whose answer is heard next
+  std::deque<EnvironmentState> asked_;  // of the calls from this one on that the program knows of
   std::vector<std::uint64_t> digests_;  // of what it said, by call
   std::optional<Checkpoint> checkpoint_;
   std::deque<ObjectStates> held_;  // of the last calls

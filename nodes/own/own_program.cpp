@@ -42,11 +42,17 @@ std::string end_text(int status) {
   return "its program has ended with code " + std::to_string(WEXITSTATUS(status));
 }
 
+v1::OwnNodeRequest request_of(const v1::OwnNodeStep& step) {
+  v1::OwnNodeRequest request;
+  *request.mutable_step() = step;
+  return request;
+}
+
 }  // namespace
 
 /// What an ended program has said last, and where.
-std::string OwnProgram::last_words(int status) const {
-  const bool forgot = endpoint_ && WEXITSTATUS(status) == 0;
+std::string OwnProgram::last_words() const {
+  const bool forgot = endpoint_ && WEXITSTATUS(status_) == 0;
   const std::string question = forgot ? ": does it call dmise.serve?" : "";
   if (settings_.log_path.empty()) return question;
   const std::string line = printable(last_line(settings_.log_path));
@@ -148,14 +154,23 @@ std::optional<OwnProgram::Answer> OwnProgram::receive() {
   }
 }
 
+bool OwnProgram::has_ended() {
+  if (pid_ != 0 && waitpid(pid_, &status_, WNOHANG) == pid_) {
+    pid_ = 0;
+    wait_until(ZMQ_POLLIN, last_words_within);
+  }
+  return pid_ == 0;
+}
+
+void OwnProgram::throw_end() const {
+  if (WIFSIGNALED(status_)) throw ProgramLost(end_text(status_));
+  throw Error(end_text(status_) + (endpoint_ ? " before it was ready" : "") + last_words());
+}
+
 void OwnProgram::require_alive() {
-  int status = 0;
-  if (waitpid(pid_, &status, WNOHANG) != pid_) return;
-  pid_ = 0;
-  wait_until(ZMQ_POLLIN, last_words_within);
+  if (!has_ended()) return;
   receive();  // throws if it said why
-  if (WIFSIGNALED(status)) throw ProgramLost(end_text(status));
-  throw Error(end_text(status) + (endpoint_ ? " before it was ready" : "") + last_words(status));
+  throw_end();
 }
 
 std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
@@ -163,7 +178,10 @@ std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
   for (Instant awake = asked; !stopped(); awake = now()) {
     wait_until(ZMQ_POLLIN, look_every);
     if (auto got = receive()) return got;
-    require_alive();
+    if (has_ended()) {
+      if (auto got = receive()) return got;
+      throw_end();
+    }
     // While this process was suspended it could not hear anything.
     if (to_seconds(now() - awake) > 0.5 * settings_.silent_after_s) heard_ = now();
     const double silent_s = to_seconds(now() - heard_);
@@ -176,11 +194,15 @@ std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
   return std::nullopt;
 }
 
-std::optional<OwnProgram::Stepped> OwnProgram::step(const v1::OwnNodeStep& step,
-                                                    const EnvironmentState& environment) {
-  v1::OwnNodeRequest request;
-  *request.mutable_step() = step;
-  if (!send(request, settings_.silent_after_s, encode(environment).payload)) return std::nullopt;
+bool OwnProgram::ask(const v1::OwnNodeStep& step, const EnvironmentState& environment) {
+  return send(request_of(step), settings_.silent_after_s, encode(environment).payload);
+}
+
+bool OwnProgram::ask_ahead(const v1::OwnNodeStep& step, const EnvironmentState& environment) {
+  return try_to_send(request_of(step), encode(environment).payload);
+}
+
+std::optional<OwnProgram::Stepped> OwnProgram::stepped() {
   auto got = answer(working_within_s);
   if (!got) return std::nullopt;
   if (!got->head.has_stepped()) throw Error("its program answers a step by something else");

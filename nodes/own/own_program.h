@@ -51,8 +51,12 @@ class OwnProgram {
     std::uint64_t digest = 0;  // of the states as they came
     std::optional<std::string> checkpoint;
   };
-  /// What it says of a tick; nothing after the stop.
-  std::optional<Stepped> step(const v1::OwnNodeStep& step, const EnvironmentState& environment);
+  /// Asks for the states of a tick; false after the stop.
+  bool ask(const v1::OwnNodeStep& step, const EnvironmentState& environment);
+  /// Asks for those of a further tick before it has answered; false if it is not there any more.
+  bool ask_ahead(const v1::OwnNodeStep& step, const EnvironmentState& environment);
+  /// What it says of the first tick that it has not answered; nothing after the stop.
+  std::optional<Stepped> stepped();
   /// What it finds in a frame with these counts; nothing after the stop.
   std::optional<v1::OwnNodeFound> find(const v1::OwnNodeFrame& frame, std::string_view counts);
 
@@ -71,8 +75,11 @@ class OwnProgram {
   /// What came, if it is not a sign of life.
   std::optional<Answer> receive();
   bool stopped() const { return settings_.stop && settings_.stop->is_set(); }
+  bool has_ended();
+  /// Throws if the process has ended.
   void require_alive();
-  std::string last_words(int status) const;
+  [[noreturn]] void throw_end() const;
+  std::string last_words() const;
   void end(int signal);
 
   ProgramSettings settings_;
@@ -80,6 +87,7 @@ class OwnProgram {
   zmq::context_t context_{1};
   zmq::socket_t socket_;
   pid_t pid_ = 0;     // 0: it has ended
+  int status_ = 0;    // with which it has
   Instant heard_{0};  // when it last gave a sign of life
 };
 

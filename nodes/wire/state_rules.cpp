@@ -73,8 +73,8 @@ void check(const ObjectStates& states) {
       states.velocity_m_per_s.size() != 3 * states.count || states.code.size() != states.count)
     refuse("count", "arrays have another size");
   all_within(states.position_m, distance_limit_m, "position_m");
-  all_within(states.slope_m_per_s, speed_limit_m_per_s, "slope_m_per_s");
   all_within(states.velocity_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
+  all_within(states.slope_m_per_s, speed_limit_m_per_s, "slope_m_per_s");  // often the velocity
   check_attitudes(states);
 }
 

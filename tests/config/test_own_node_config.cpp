@@ -49,6 +49,8 @@ TEST(OwnNodeConfig, WhatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(complaint("[{name: gnc, run: [no-such-program]}]"),
               HasSubstr("nodes[0].run[0]: there is no such program, got no-such-program"));
   EXPECT_THAT(complaint("[{name: gnc, run: [./s.yaml]}]"), HasSubstr("there is no such program"));
+  EXPECT_THAT(complaint("[{name: gnc, run: [sh, -x, gone.py]}]"),
+              HasSubstr("nodes[0].run[2]: there is no such file in "));
   EXPECT_THAT(complaint("[{name: gnc, run: [sh], period_ticks: 0}]"),
               HasSubstr("nodes[0].period_ticks: must be >= 1, got 0"));
   EXPECT_THAT(complaint("[{name: gnc, run: [sh], options: {a: {b: 1}}}]"),
@@ -60,9 +62,9 @@ TEST(OwnNodeConfig, ProgramsNeedLeave) {
   EXPECT_EQ(config_error_of([] { refuse_programs(read("[{name: a, elsewhere: on}]")); }),
             "no error");
   EXPECT_THAT(config_error_of([] {
-                refuse_programs(read("[{name: a, elsewhere: on}, {name: b, run: [sh, x.sh]}]"));
+                refuse_programs(read("[{name: a, elsewhere: on}, {name: b, run: [sh, x]}]"));
               }),
-              testing::AllOf(HasSubstr("nodes[1].run: the scenario starts `sh x.sh`"),
+              testing::AllOf(HasSubstr("nodes[1].run: the scenario starts `sh x`"),
                              HasSubstr("--allow-programs")));
 }
 

@@ -174,7 +174,8 @@ FAULTS = {  # what a program does at tick 3, and what the run says of it
     "wrong_shape": r"gnc: tick 3: ValueError: position_m: must have the shape \(3,\), got \(2,\)",
     "nan": r"gnc: tick 3: position_m: .*",
     "far": r"gnc: tick 3: position_m: .*",
-    "fast": r"gnc: tick 3: slope_m_per_s: .*",
+    "fast": r"gnc: tick 3: velocity_m_per_s: .*",
+    "signature": r"gnc: tick 0: TypeError: orbit\(\) takes 1 positional argument but 3 were given \(signature.py:5\)",
     "nothing": r"gnc: tick 3: ValueError: position_m and velocity_m_per_s: are needed.*",
     "another_object": r"gnc: tick 3: ValueError: ghost: the node has no such object, only probe",
     "past": r"gnc: tick 3: its states are of tick 2, 2 s",
@@ -193,7 +194,7 @@ FAULTS = {  # what a program does at tick 3, and what the run says of it
 def ends_with_a_reason(binary, directory):
     for number, (fault, words) in enumerate(FAULTS.items()):
         raw = fault in ("past", "two_objects", "turned", "rubbish", "two_frames", "hangs_silently")
-        named = "no_module" if fault == "never_connects" else "wrong_raw" if raw else "wrong"
+        named = {"never_connects": "no_module", "signature": "signature"}.get(fault, "wrong_raw" if raw else "wrong")
         scenario = write(directory, "wrong.yaml", node=program(named, fault=fault), network=", real_time: 10")
         command = ("run", "launch")[number % 2 or fault == "killed_between_ticks"]  # run has no pace
         with Run(binary, command, scenario, "--allow-programs", "--out", directory / f"wrong-{fault}") as run:
@@ -211,6 +212,8 @@ def asks_first(binary, directory):
     dmise(binary, "check", scenario)
     check(not (directory / "never").exists(), "neither they nor check start it")
     trusts(binary, directory)
+    said = dmise(binary, "check", write(directory, "bad.yaml", node=program("wakl")), code=2)
+    check(re.search(r"bad.yaml:6:\d+: nodes\[0\].run\[1\]: there is no such file in .*, got wakl.py", said), said.strip())
     bad = {"node: gnd": "no node of `nodes` has this name, did you mean gnc?"}
     for motion, words in bad.items():
         said = dmise(binary, "check", write(directory, "bad.yaml", motion=f"{{{motion}}}", node=program("walk")), code=2)

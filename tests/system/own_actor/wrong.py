@@ -1,4 +1,4 @@
-"""An actor that does something wrong at tick 3."""
+"""An actor that does something wrong at a tick, 3 if none is told."""
 import math
 import os
 import signal
@@ -10,7 +10,7 @@ import dmise
 @dmise.actor("probe")
 def orbit(t_s, world, options):
     place, speed = [7178112.0, -2810.0, 18581.0 + 7368.0 * t_s], [0.0, 0.0, 7368.0]
-    fault = options["fault"] if world.tick == 3 else ""
+    fault = options["fault"] if world.tick == options.get("at", 3) else ""
     if fault == "raises":
         raise ValueError("no fuel")
     if fault == "exits":

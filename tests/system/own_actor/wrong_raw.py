@@ -13,7 +13,7 @@ socket.connect(os.environ["DMISE_OWN_NODE"])
 
 def stepped(step, fault):
     tick = step.tick - 1 if fault == "past" else step.tick
-    time_ns = tick * 1_000_000_000
+    time_ns = (tick - 10 * (fault == "late")) * 1_000_000_000
     count = 2 if fault == "two_objects" else 1
     states = state_pb2.ObjectStates(tick=tick, time_ns=time_ns, count=count)
     arrays = b""
@@ -35,10 +35,10 @@ while True:
     if request.HasField("end"):
         break
     if request.HasField("begin"):
-        wanted = json.loads(request.begin.options_json)["fault"]
+        options = json.loads(request.begin.options_json)
         socket.send(own_node_pb2.OwnNodeAnswer(ready={}).SerializeToString())
         continue
-    fault = wanted if request.step.tick == 3 else ""
+    fault = options["fault"] if request.step.tick == options.get("at", 3) else ""
     if fault == "rubbish":
         socket.send(np.random.default_rng(1).bytes(1_000_000))
     if fault == "hangs_silently":

@@ -16,10 +16,10 @@ while True:
     if request.HasField("end"):
         break
     if request.HasField("begin"):
-        wanted = json.loads(request.begin.options_json)["fault"]
+        options = json.loads(request.begin.options_json)
         socket.send(own_node_pb2.OwnNodeAnswer(ready={}).SerializeToString())
         continue
-    fault = wanted if request.frame.frame == 2 else ""
+    fault = options["fault"] if request.frame.frame == options.get("at", 2) else ""
     if len(frames) != 2 or len(frames[1]) != 2 * request.frame.rows * request.frame.columns:
         socket.send(own_node_pb2.OwnNodeAnswer(failed="the counts have another size").SerializeToString())
     elif fault == "rubbish":

@@ -25,7 +25,8 @@ from .frame_images import Frame, Frames, frames, read_frame
 from .message import Message
 from .node import Node, Tick
 from .own_detector import Detector, Found, SensorFrame, detector
-from .own_node import Actor, State, World, actor, serve
+from .own_node import Actor, World, actor, serve
+from .own_states import State
 from .orbit_fit import Orbit, Triangulated, fit_orbit, triangulate
 from .recorder import Recorded, record
 from .recording import Recording, open_recording

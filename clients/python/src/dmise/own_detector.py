@@ -7,6 +7,8 @@
 """
 from __future__ import annotations
 
+import inspect
+import os
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
@@ -76,6 +78,16 @@ class Served:
 
     def __call__(self, *arguments: Any) -> Any:
         return self._model(*arguments)
+
+    def places(self) -> list[str]:
+        """Where the model is defined: "gnc.py:7"; of a class the function that is called; none if it has no source."""
+        called = self._model.__call__ if isinstance(self._model, type) else self._model
+        try:
+            file, (lines, first) = inspect.getfile(called), inspect.getsourcelines(called)
+        except (OSError, TypeError):
+            return []
+        names = [i for i, line in enumerate(lines) if line.lstrip().startswith(("def ", "async def "))]
+        return [f"{os.path.basename(file)}:{first + min(names, default=0)}"]
 
 
 class Detector(Served):

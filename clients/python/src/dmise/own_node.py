@@ -9,44 +9,28 @@ from __future__ import annotations
 
 import asyncio
 import datetime
+import functools
 import inspect
 import json
 import os
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
 import zmq
 
 from . import own_detector, protocol
 from .convert import record_of, start_of
 from .own_detector import Detector, Served
-from .records import ArrayLike, Floats
+from .own_states import StatesWriter
 from .world import EnvironmentState
 
 ADDRESS_VARIABLE = "DMISE_OWN_NODE"
-NO_STATE = 18  # code of an object that its node gives no state
 LONGEST_REQUEST_BYTES = 1 << 30  # frames of 500 Mpx
 LINGER_MS = 1000  # for the last answer
-
-
-@dataclass
-class State:
-    """The state of one object at a tick, in GCRS: 3 numbers each; or those of n objects as arrays 3 x n.
-
-    gcrs_from_body  unit quaternion w, x, y, z (4, or 4 x n) with v_gcrs = q v_body q*, of objects that the node turns
-    rate_rad_per_s  angular velocity of the body in GCRS axes; without it 0
-    slope_m_per_s   derivative of the position where it is not the velocity, for interpolation between ticks
-    """
-    position_m: Any = None
-    velocity_m_per_s: Any = None
-    gcrs_from_body: Any = None
-    rate_rad_per_s: Any = None
-    slope_m_per_s: Any = None
 
 
 @dataclass
@@ -54,10 +38,17 @@ class World:
     """What a model is told with a tick."""
     tick: int
     time_ns: int
-    environment: EnvironmentState  # Sun, Moon and Earth at the tick
+    environment_bytes: bytes = field(repr=False)
+    start_utc: datetime.datetime | None = field(repr=False)
     node: str = ""
     objects: list[str] = field(default_factory=list)  # those that it moves or turns, in the order of arrays
     seed: int = 0  # of the scenario
+
+    @functools.cached_property
+    def environment(self) -> EnvironmentState:
+        """Sun, Moon and Earth at the tick; read when it is asked for."""
+        state: EnvironmentState = record_of(protocol.EnvironmentState.FromString(self.environment_bytes), self.start_utc)
+        return state
 
     @property
     def time_utc(self) -> datetime.datetime:
@@ -107,6 +98,9 @@ class _Conversation:
         self._socket.reconnect_ivl = -1
         self._lost = self._socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
         self._socket.connect(address)
+        self._poller = zmq.Poller()
+        self._poller.register(self._socket, zmq.POLLIN)
+        self._poller.register(self._lost, zmq.POLLIN)
         self._lock = threading.Lock()  # of the socket while the model works
         self._working = False
         self._over = threading.Event()
@@ -128,10 +122,7 @@ class _Conversation:
 
     def _next(self) -> list[bytes] | None:
         """The next request; None if the run is gone."""
-        poller = zmq.Poller()
-        poller.register(self._socket, zmq.POLLIN)
-        poller.register(self._lost, zmq.POLLIN)
-        ready = dict(poller.poll())
+        ready = dict(self._poller.poll())
         return self._socket.recv_multipart() if self._socket in ready else None
 
     def _answer(self, request: Any, more: list[bytes]) -> None:
@@ -144,7 +135,7 @@ class _Conversation:
                 frames = self._step(request.step, more[0])
         except Exception as error:
             traceback.print_exc()
-            self._send([protocol.OwnNodeAnswer(failed=_text_of(error)).SerializeToString()])
+            self._send([protocol.OwnNodeAnswer(failed=_text_of(error, self._served)).SerializeToString()])
             raise _Failed from error
         self._send(frames)
 
@@ -170,6 +161,7 @@ class _Conversation:
         self._begun = begin
         self._start = start_of(begin.start_utc)
         self._objects = [each.name for each in begin.objects]
+        self._states = StatesWriter(begin.objects)
         self._options = json.loads(begin.options_json)
         self._require_task()
         self._model = self._served.make()
@@ -198,103 +190,21 @@ class _Conversation:
         return asyncio.run(_result_of(said)) if inspect.isawaitable(said) else said
 
     def _step(self, step: Any, environment: bytes) -> list[bytes]:
-        world = World(step.tick, step.time_ns,
-                      record_of(protocol.EnvironmentState.FromString(environment), self._start),
-                      self._begun.node, self._objects, self._begun.seed)
+        world = World(step.tick, step.time_ns, environment, self._start, self._begun.node, self._objects, self._begun.seed)
         said = self._said_by(step.time_ns / 1e9, world, self._options)
         stepped = protocol.OwnNodeStepped()
         if step.give_checkpoint and hasattr(self._model, "checkpoint"):
             stepped.checkpoint = self._model.checkpoint()
-        states, arrays = _packed(said, self._begun.objects)
-        states.tick, states.time_ns = step.tick, step.time_ns
-        return [protocol.OwnNodeAnswer(stepped=stepped).SerializeToString(), states.SerializeToString(), arrays]
+        return [protocol.OwnNodeAnswer(stepped=stepped).SerializeToString(), *self._states.frames(said, step.tick, step.time_ns)]
 
 
 async def _result_of(said: Any) -> Any:
     return await said
 
 
-def _text_of(error: Exception) -> str:
-    """"ValueError: no orbit (gnc.py:12)": the last line that is not of this package."""
+def _text_of(error: Exception, served: Served) -> str:
+    """"ValueError: no orbit (gnc.py:12)": the last line that is not of this package, else where the model is defined."""
     here = os.path.dirname(__file__)
-    lines = [frame for frame in traceback.extract_tb(error.__traceback__)
-             if os.path.dirname(frame.filename) != here]
-    place = f" ({os.path.basename(lines[-1].filename)}:{lines[-1].lineno})" if lines else ""
-    return f"{type(error).__name__}: {error}{place}"
-
-
-def _packed(said: Any, objects: Any) -> tuple[Any, bytes]:
-    """What a model says, as ObjectStates and their arrays."""
-    count = len(objects)
-    code = np.zeros(count, np.uint8)
-    if not isinstance(said, State):
-        each = _of_each(said, [one.name for one in objects])
-        code[[state is None for state in each]] = NO_STATE
-        said = _together(each)
-    there = code == 0
-    position_m, velocity_m_per_s, slope_m_per_s = (
-        _matrix(said, name, 3, count) for name in ("position_m", "velocity_m_per_s", "slope_m_per_s"))
-    if any(one.moved for one in objects) and (position_m is None or velocity_m_per_s is None):
-        raise ValueError("position_m and velocity_m_per_s: are needed of objects that the node moves")
-    turned = [i for i in range(count) if objects[i].turned]
-    gcrs_from_body, rate_rad_per_s = _matrix(said, "gcrs_from_body", 4, count), _matrix(said, "rate_rad_per_s", 3, count)
-    if turned and gcrs_from_body is None:
-        raise ValueError("gcrs_from_body: is needed of objects that the node turns")
-    zeros = np.zeros((3, count))
-    states, arrays = protocol.ObjectStates(count=count), bytearray()
-    _add(states, arrays, "position_m", zeros if position_m is None else position_m * there)
-    slope_m_per_s = velocity_m_per_s if slope_m_per_s is None else slope_m_per_s
-    _add(states, arrays, "slope_m_per_s", zeros if slope_m_per_s is None else slope_m_per_s * there)
-    _add(states, arrays, "velocity_m_per_s", zeros if velocity_m_per_s is None else velocity_m_per_s * there)
-    _add(states, arrays, "code", code)
-    if turned:
-        _add(states, arrays, "attitude_object", np.array(turned, np.uint32))
-        _add(states, arrays, "gcrs_from_body", (gcrs_from_body * there)[:, turned])
-        _add(states, arrays, "attitude_rate_rad_per_s", (zeros if rate_rad_per_s is None else rate_rad_per_s * there)[:, turned])
-    return states, bytes(arrays)
-
-
-def _of_each(said: Any, names: list[str]) -> list[State | None]:
-    """The state of each object: of a mapping by name, of a list by place, or of the only one."""
-    if isinstance(said, Mapping):
-        if unknown := set(said) - set(names):
-            raise ValueError(f"{min(unknown)}: the node has no such object, only {', '.join(names)}")
-        said = [said.get(name) for name in names]
-    each = [said] if said is None else list(said)
-    if wrong := [one for one in each if not (one is None or isinstance(one, State))]:
-        raise TypeError(f"a dmise.State is needed of each object, got {type(wrong[0]).__name__} in {type(said).__name__}")
-    if len(each) != len(names):
-        raise ValueError(f"a state is needed of each of {len(names)} objects, got {len(each)}")
-    return each
-
-
-def _together(each: list[State | None]) -> State:
-    def columns(name: str, rows: int) -> Floats | None:
-        given = [None if state is None else getattr(state, name) for state in each]
-        if all(one is None for one in given):
-            return np.zeros((rows, len(each))) if all(state is None for state in each) else None
-        return np.column_stack([np.zeros(rows) if one is None else _shaped(one, (rows,), name) for one in given])
-
-    return State(columns("position_m", 3), columns("velocity_m_per_s", 3), columns("gcrs_from_body", 4),
-                 columns("rate_rad_per_s", 3), columns("slope_m_per_s", 3))
-
-
-def _matrix(state: State, name: str, rows: int, count: int) -> Floats | None:
-    value = getattr(state, name)
-    if value is None:
-        return None
-    if count == 1 and np.ndim(value) == 1:
-        return _shaped(value, (rows,), name).reshape(rows, 1)
-    return _shaped(value, (rows, count), name)
-
-
-def _shaped(value: Any, shape: tuple[int, ...], name: str) -> Floats:
-    numbers = np.asarray(value, dtype=np.float64)
-    if numbers.shape != shape:
-        raise ValueError(f"{name}: must have the shape {shape}, got {numbers.shape}")
-    return numbers
-
-
-def _add(states: Any, arrays: bytearray, name: str, values: ArrayLike) -> None:
-    states.arrays.add(name=name, type=str(values.dtype), shape=values.shape, offset_bytes=len(arrays))
-    arrays += np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
+    lines = [f"{os.path.basename(frame.filename)}:{frame.lineno}" for frame in traceback.extract_tb(error.__traceback__)
+             if os.path.dirname(frame.filename) != here] or served.places()
+    return f"{type(error).__name__}: {error}" + (f" ({lines[-1]})" if lines else "")

@@ -21,7 +21,7 @@ def __getattr__(name: str) -> Any:
     """A message class, an enumeration or a value of one."""
     for module in modules:
         if hasattr(module, name):
-            return getattr(module, name)
+            return globals().setdefault(name, getattr(module, name))  # found at once from now on
     raise AttributeError(name)
 
 
