@@ -11,7 +11,6 @@
 namespace dmise {
 namespace {
 
-constexpr Tick checkpoint_every = 64;      // calls
 constexpr std::size_t calls_held = 3;      // for joining two, and for the error between three
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
 
@@ -76,9 +75,9 @@ bool OwnActor::ask_up_to(Tick call) {
       if (!ask()) return false;
     } catch (const ProgramLost& lost) {
       program_.reset();
-      restarts_.after(lost, "tick " + std::to_string(tick_of(next_call_)));
+      restarts_.after(lost, "tick " + std::to_string(tick_of(said_.next())));
     } catch (const Error& error) {
-      throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(next_call_)) + ": " +
+      throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(said_.next())) + ": " +
                   error.what());
     }
     ++steps_;
@@ -88,19 +87,17 @@ bool OwnActor::ask_up_to(Tick call) {
 
 bool OwnActor::ask() {
   if (!program_) start();
-  const Tick tick = tick_of(next_call_);
+  const Tick tick = tick_of(said_.next());
   v1::OwnNodeStep step;
   step.set_tick(tick);
   step.set_time_ns(scenario_.time_of(tick).ns);
-  step.set_give_checkpoint(next_call_ % checkpoint_every == checkpoint_every - 1);
+  step.set_give_checkpoint(said_.wants_checkpoint());
   const EnvironmentState environment = environment_at(clock_, tick, scenario_.time_of(tick));
   auto stepped = program_->step(step, environment);
   if (!stepped) return false;
   check(stepped->states);
   look_at_places(stepped->states, environment.earth);
-  require_same(stepped->digest);
-  if (stepped->checkpoint) checkpoint_ = {next_call_, std::move(*stepped->checkpoint)};
-  ++next_call_;
+  said_.add(stepped->digest, std::move(stepped->checkpoint), "states");
   if (!held_.empty() && held_.back().tick >= tick) return true;  // said before
   held_.push_back(std::move(stepped->states));
   if (held_.size() > calls_held) held_.pop_front();
@@ -117,17 +114,17 @@ v1::OwnNodeBegin OwnActor::begin() const {
     one.set_moved(is_moved_by(node_, *object));
     one.set_turned(is_turned_by(node_, *object));
   }
-  if (checkpoint_) begin.set_checkpoint(checkpoint_->bytes);
   return begin;
 }
 
 void OwnActor::start() {
-  next_call_ = checkpoint_ ? checkpoint_->call + 1 : 0;
-  program_.emplace(program_settings(scenario_, node_, settings_), begin(), restarts_.any());
+  v1::OwnNodeBegin told = begin();
+  said_.continue_at(told);
+  program_.emplace(program_settings(scenario_, node_, settings_), std::move(told), restarts_.any());
 }
 
 void OwnActor::check(const ObjectStates& states) const {
-  const Tick tick = tick_of(next_call_);
+  const Tick tick = tick_of(said_.next());
   if (states.tick != tick || states.time != scenario_.time_of(tick))
     throw Error("its states are of tick " + std::to_string(states.tick) + ", " +
                 formatted("%.9g", states.time.seconds()) + " s");
@@ -155,16 +152,6 @@ void OwnActor::look_at_places(const ObjectStates& states, const EarthOrientation
             " is not in the scene at tick %ld: %.6g m from the Earth's centre is under the ground",
             long(states.tick), norm(states.position(i))));
   }
-}
-
-/// A program that was started again repeats what it said.
-void OwnActor::require_same(std::uint64_t digest) {
-  const auto call = std::size_t(next_call_);
-  if (call == digests_.size()) return digests_.push_back(digest);
-  if (digests_[call] != digest)
-    throw Error(
-        "started again, its program says something else of this tick than before: its "
-        "states must be the same in each run");
 }
 
 /// Warns of objects whose paths between ticks are not what the planner takes them for.

@@ -26,16 +26,11 @@ class OwnActor : public Actor {
   std::uint64_t progress() const override { return steps_; }
 
  private:
-  struct Checkpoint {
-    Tick call = 0;
-    std::string bytes;
-  };
   /// Asks for the states of all calls up to this one that it has not; false after the stop.
   bool ask_up_to(Tick call);
   bool ask();
   void start();
   void check(const ObjectStates& states) const;
-  void require_same(std::uint64_t digest);
   void look_at_errors();
   void look_at_places(const ObjectStates& states, const EarthOrientation& earth);
   v1::OwnNodeBegin begin() const;
@@ -49,9 +44,7 @@ class OwnActor : public Actor {
   std::vector<const OwnObject*> objects_;  // in the scenario's order
   std::vector<std::uint32_t> turned_;      // of these, by index
   std::optional<OwnProgram> program_;
-  Tick next_call_ = 0;                  // of the program
-  std::vector<std::uint64_t> digests_;  // of what it said, by call
-  std::optional<Checkpoint> checkpoint_;
+  OwnRecord said_;
   std::deque<ObjectStates> held_;  // of the last calls
   OwnRestarts restarts_;
   std::vector<bool> warned_;       // of objects that are not interpolated well
