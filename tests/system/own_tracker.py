@@ -172,7 +172,6 @@ def goes_on_after_a_stop(binary, directory):
         check_like(out, directory / "follow", "the products are those of a run that was not stopped")
 
 
-MINE = r"fusion-node: mine: tick 3: "
 FAULTS = {  # what a program does at tick 3, and what the run says of it
     "raises": r"ValueError: no orbit \(wrong.py:\d+\)",
     "exits": r"its program has ended with code 7",
@@ -213,14 +212,19 @@ RAW = ("past", "rubbish", "one_frame", "ready", "no_tracks", "hangs_silently")
 LAUNCHED = ("raises", "nan", "killed", "hangs_silently")
 
 
+def tick_of(fault):
+    return r"\d+" if fault == "taken_twice" else 3  # the first that has a detection
+
+
 def ends_with_a_reason(binary, directory):
     for fault, words in FAULTS.items():
-        scenario = write(directory, "wrong.yaml", program("wrong_raw" if fault in RAW else "wrong", fault=fault), duration_s=6)
+        scenario = write(directory, "wrong.yaml", program("wrong_raw" if fault in RAW else "wrong", fault=fault),
+                         duration_s=90 if fault == "taken_twice" else 6)
         command = "launch" if fault in LAUNCHED else "run"
         with Run(binary, command, scenario, "--allow-programs", "--out", directory / f"wrong-{fault}") as run:
             code, _ = run.finish()
             last = run.stderr.strip().splitlines()[-1]
-            check(code == 1 and re.search(MINE + f"({words})", last), f"{command}, {fault}: code {code}: {last}")
+            check(code == 1 and re.search(f"fusion-node: mine: tick {tick_of(fault)}: ({words})", last), f"{command}, {fault}: code {code}: {last}")
             run.nothing_left()
 
 

@@ -16,7 +16,7 @@ FAULTS = {"nan": {"position_m": [math.nan, 0, 0]}, "far": {"position_m": [1e16, 
           "indefinite": {"covariance": INDEFINITE}, "skew": {"covariance": SKEW}, "certain": {"covariance": np.zeros(21)},
           "vast": {"covariance": 1e40 * np.eye(6)},
           "unknown_detection": {"associated": ["eye/1/7"]}, "no_id": {"id": 0}, "status": {"status": "sure"},
-          "no_object": {"catalogue_number": 7}, "other_object": {"catalogue_number": 4}, "existence": {"existence": 1.5}}
+          "no_object": {"catalogue_number": 7}, "other_object": {"catalogue_number": 41866}, "existence": {"existence": 1.5}}
 TASKS = {"no_sensor": ("scop", 1), "not_cued": ("eye", 1), "no_track": ("scope", 2), "exposures": ("scope", 1, 1001)}
 
 
@@ -39,8 +39,8 @@ def track(t_s, frames, world, options):
         return [dataclasses.replace(RIGHT, id=k + 1) for k in range(10_001)]
     if fault == "twice":
         return [RIGHT, RIGHT]
-    if fault == "taken_twice":
-        found = [d.id for frame in frames for d in frame.detections]
+    found = [d.id for frame in frames for d in frame.detections]
+    if options["fault"] == "taken_twice" and found:
         return [dataclasses.replace(RIGHT, associated=found[:1]), dataclasses.replace(RIGHT, id=2, associated=found[:1])]
     if fault == "two_tasks":
         return dmise.Tracks([RIGHT], [dmise.Point("scope", 1)] * 2)
@@ -49,7 +49,7 @@ def track(t_s, frames, world, options):
     if options["fault"] == "comes_back" and world.tick == 2:
         return [dataclasses.replace(RIGHT, status="lost")]
     if options["fault"] == "other_object" and world.tick < 3:
-        return [dataclasses.replace(RIGHT, catalogue_number=3)]
+        return [dataclasses.replace(RIGHT, catalogue_number=35491)]
     return [dataclasses.replace(RIGHT, **FAULTS.get(fault, {}))]
 
 
