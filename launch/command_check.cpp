@@ -165,7 +165,7 @@ void print_interpolation(const Scenario& scenario) {
   std::printf("objects between ticks: %s\n",
               interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
   for (const OwnNode& node : scenario.own_nodes)
-    if (!node.detects)
+    if (node.role == OwnNodeRole::actor)
       std::printf(
           "objects of %s between ticks: cubics join states %g s apart, by an error that "
           "depends on the node; the run notes more than 1 m\n",

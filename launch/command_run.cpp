@@ -179,7 +179,7 @@ std::map<std::string, std::string> recordings_of(const std::vector<std::string>&
   for (const std::string& one : replayed) {
     const std::string name = one.substr(0, one.find('='));
     const auto node = std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
-    if (name == one || node == scenario.own_nodes.end() || node->detects)
+    if (name == one || node == scenario.own_nodes.end() || node->role != OwnNodeRole::actor)
       throw ConfigError(
           "--replay-node: must be NODE=FILE with a node of the scenario that moves or turns "
           "objects, got " +

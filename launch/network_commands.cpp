@@ -14,7 +14,8 @@ void add_commands(CLI::App& app) {
     add_command(app);
 }
 
-std::unique_ptr<Participant> make_fusion(const Scenario&, const Clock&, const std::string&) {
+std::unique_ptr<Participant> make_fusion(const Scenario&, const Clock&, const std::string&,
+                                         OwnNodeSettings) {
   throw Error("this part of the program has no fusion: ./dmise build makes the whole");
 }
 

@@ -58,8 +58,9 @@ std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts
                                               parts.directory);
 }
 
-std::unique_ptr<Participant> make_fusion_node(const std::string&, NodeParts& parts) {
-  return make_fusion(parts.scenario, make_clock(parts.scenario), parts.directory);
+std::unique_ptr<Participant> make_fusion_node(const std::string& name, NodeParts& parts) {
+  return make_fusion(parts.scenario, make_clock(parts.scenario), parts.directory,
+                     {.error_prefix = name + ": ", .note = parts.note, .stop = &stop_signal()});
 }
 
 std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {

@@ -32,6 +32,7 @@ std::string node_text(const Scenario& scenario, const OwnNode& node) {
   for (const SensorConfig& sensor : scenario.sensors)
     if (sensor.detector && sensor.detector->node == node.name) searched.push_back(sensor.name);
   if (!searched.empty()) text += "; it detects in frames of " + joined(searched);
+  if (node.role == OwnNodeRole::tracker) text += "; it makes the tracks";
   if (!moved.empty()) text += "; it moves " + joined(moved);
   if (!turned.empty()) text += "; it turns " + joined(turned);
   return text;

@@ -1,8 +1,10 @@
 #include "core/config/fusion_config.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/base/formatted.h"
+#include "core/config/section.h"
 #include "core/config/yaml_reader.h"
 
 namespace dmise {
@@ -15,13 +17,33 @@ void read_sigmas(YamlMap& map, const char* key, std::array<double, 3>& sigmas) {
   std::copy(numbers.begin(), numbers.end(), sigmas.begin());
 }
 
+/// A tracker of the user's takes few of the keys.
+void read_node(YamlMap& map, FusionConfig& config) {
+  const auto node = map.find("node");
+  if (!node) return;
+  config.node = node->text();
+  config.node_where = node->place();
+  constexpr std::array taken{"node", "detection_probability", "cue_delay_ticks",
+                             "not_in_catalogue"};
+  for (const Key& key : fusion_section().keys) {
+    if (std::ranges::find(taken, key.name) != taken.end()) continue;
+    if (const auto value = map.find(key.name))
+      value->fail("is of the fusion node's own filters, and node " + config.node +
+                  " makes the tracks");
+  }
+}
+
 }  // namespace
 
 const Section& fusion_section() {
   static const Section section{
       "fusion",
       "A node that makes tracks of the detections of all sensors.",
-      {optional("catalogue_sigma_m", form::numbers(3, 1.0, 1e8),
+      {optional("node", form::text(),
+                "Node of `nodes` whose program makes the tracks, instead of the fusion node's own "
+                "filters. Of the other keys it takes `detection_probability`, `cue_delay_ticks` "
+                "and `not_in_catalogue`."),
+       optional("catalogue_sigma_m", form::numbers(3, 1.0, 1e8),
                 "Errors of the catalogue at its epoch [m]: radial, along the track, across it."),
        optional("catalogue_sigma_m_per_day", form::numbers(3, 0.0, 1e8),
                 "Growth of these errors [m per day]."),
@@ -66,6 +88,7 @@ FusionConfig read_fusion(const YamlValue& value) {
   config.where = value.place();
   if (value.is_scalar() && value.flag()) return config;
   YamlMap map(value, fusion_section());
+  read_node(map, config);
   FusionSettings& s = config.settings;
   read_sigmas(map, "catalogue_sigma_m", s.catalogue_sigma_m);
   read_sigmas(map, "catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day);

@@ -7,6 +7,8 @@ namespace {
 
 bool always(const Scenario&) { return true; }
 
+bool is_actor(const OwnNode& node) { return node.role == OwnNodeRole::actor; }
+
 const std::vector<NodeKind> table{
     {.name = orbit_node,
      .program = "dmise-orbit-node",
@@ -19,8 +21,7 @@ const std::vector<NodeKind> table{
     {.name = any_own_node,
      .program = "dmise-own-node",
      .topics = {"state/actor/"},
-     .wanted =
-         [](const Scenario& s) { return !std::ranges::all_of(s.own_nodes, &OwnNode::detects); },
+     .wanted = [](const Scenario& s) { return std::ranges::any_of(s.own_nodes, is_actor); },
      .each_own_node = true},
     {.name = any_sensor,
      .program = "dmise-sensor-node",
@@ -46,7 +47,7 @@ bool is_sensor(const std::string& name, const Scenario& scenario) {
 
 bool is_own_node(const std::string& name, const Scenario& scenario) {
   return std::ranges::any_of(scenario.own_nodes,
-                             [&](const auto& n) { return n.name == name && !n.detects; });
+                             [&](const auto& n) { return n.name == name && is_actor(n); });
 }
 
 bool is_of(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
@@ -72,11 +73,13 @@ std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario
     for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
   else
     for (const auto& node : scenario.own_nodes)
-      if (!node.detects) names.push_back(node.name);
+      if (is_actor(node)) names.push_back(node.name);
   return names;
 }
 
 bool starts_program(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
+  if (kind.name == std::string_view(fusion_node))
+    return scenario.fusion && !scenario.fusion->node.empty();
   return kind.each_own_node || (kind.each_sensor && sensor_named(scenario, name).detector);
 }
 

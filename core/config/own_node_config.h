@@ -10,8 +10,11 @@ namespace dmise {
 class YamlValue;
 class JsonWriter;
 
-/// A program of the user's that is a node of the run, or the detector of sensors: `{name: gnc, run:
-/// [python3, gnc.py]}`.
+/// What a program of the user's does: it is a node of the run, or runs in the process of a sensor
+/// or of the fusion node.
+enum class OwnNodeRole { none, actor, detector, tracker };
+
+/// A program of the user's: `{name: gnc, run: [python3, gnc.py]}`.
 struct OwnNode {
   std::string name;
   std::string where;             // `file:line:column: nodes[0]`, for messages
@@ -20,7 +23,7 @@ struct OwnNode {
   std::string directory;         // in which it runs: that of the scenario
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
-  bool detects = false;  // in the frames of sensors, in whose processes it runs; else it is a node
+  OwnNodeRole role = OwnNodeRole::none;
 };
 
 /// The keys of a node, for lists of them.

@@ -98,6 +98,7 @@ void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
   if (s.pointing_sigma_arcsec != FusionSettings{}.pointing_sigma_arcsec)
     json.field("pointing_sigma_arcsec", s.pointing_sigma_arcsec);
   json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
+  if (!fusion.node.empty()) json.field("node", fusion.node);
   json.list("not_in_catalogue", fusion.not_in_catalogue).end_object();
 }
 

@@ -218,35 +218,37 @@ void check_cued(const Scenario& scenario, const SensorConfig& sensor) {
     fail("persistence needs all exposures; set effects: {persistence: off}");
 }
 
-/// Throws `ConfigError` at `where` if no node of the user's has this name.
-void require_own_node(const Scenario& scenario, const std::string& name, const std::string& where) {
+/// Returns the node of the user's of this name, which has the role from then on. Throws
+/// `ConfigError` at `where` if there is none, or one that has another.
+OwnNode& give_role(Scenario& scenario, const std::string& name, const std::string& where,
+                   OwnNodeRole role) {
   std::vector<std::string> names;
   for (const OwnNode& node : scenario.own_nodes) names.push_back(node.name);
-  if (std::ranges::find(names, name) != names.end()) return;
-  throw ConfigError(where + ": no node of `nodes` has this name" + did_you_mean(name, names) +
-                    ", got " + printable(name));
+  const auto node = std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
+  if (node == scenario.own_nodes.end())
+    throw ConfigError(where + ": no node of `nodes` has this name" + did_you_mean(name, names) +
+                      ", got " + printable(name));
+  constexpr const char* does[] = {"", "moves or turns objects", "detects", "tracks"};
+  if (node->role != OwnNodeRole::none && node->role != role)
+    throw ConfigError(node->where + ": " + does[int(node->role)] + " and " + does[int(role)] +
+                      ": give each a node");
+  node->role = role;
+  return *node;
 }
 
-/// Marks the nodes that detect in the frames of sensors.
-void assign_detectors(Scenario& scenario) {
-  for (const SensorConfig& sensor : scenario.sensors) {
-    if (!sensor.detector) continue;
-    const auto& [name, where] = *sensor.detector;
-    require_own_node(scenario, name, where);
-    OwnNode& node = *std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
-    node.detects = true;
-    if (node.run.empty())
-      throw ConfigError(where + ": its node is elsewhere, but a sensor starts its detector: " +
-                        name + " needs run");
-    if (node.period_ticks != 1)
-      throw ConfigError(node.where +
-                        ".period_ticks: a detector is asked for each frame: must be "
-                        "1, got " +
-                        std::to_string(node.period_ticks));
-  }
+/// Gives a role to a node that `who`, the process of a sensor or of the fusion node, starts.
+void give_inner_role(Scenario& scenario, const std::string& name, const std::string& where,
+                     OwnNodeRole role, const std::string& who, const std::string& asked) {
+  const OwnNode& node = give_role(scenario, name, where, role);
+  if (node.run.empty())
+    throw ConfigError(where + ": its node is elsewhere, but " + who + ": " + name + " needs run");
+  if (node.period_ticks != 1)
+    throw ConfigError(node.where + ".period_ticks: a " + asked + ": must be 1, got " +
+                      std::to_string(node.period_ticks));
 }
 
-/// Gives each object that a node moves or turns its place among those of the node.
+/// Gives each object that a node moves or turns its place among those of the node, and each node
+/// its role.
 void assign_own_nodes(Scenario& scenario) {
   std::map<std::string, std::size_t> counts;
   for (OwnObject& object : scenario.own_objects) {
@@ -254,22 +256,26 @@ void assign_own_nodes(Scenario& scenario) {
     auto* motion = model ? std::get_if<NodeMotion>(model) : nullptr;
     auto* attitude = object.attitude ? std::get_if<NodeAttitude>(&object.attitude->model) : nullptr;
     if (motion) {
-      require_own_node(scenario, motion->node, object.motion.node_where);
+      give_role(scenario, motion->node, object.motion.node_where, OwnNodeRole::actor);
       motion->place = counts[motion->node]++;
     }
     if (!attitude) continue;
-    require_own_node(scenario, attitude->node, object.attitude->node_where);
+    give_role(scenario, attitude->node, object.attitude->node_where, OwnNodeRole::actor);
     const bool both = motion && motion->node == attitude->node;
     attitude->place = both ? motion->place : counts[attitude->node]++;
   }
-  assign_detectors(scenario);
-  for (const OwnNode& node : scenario.own_nodes) {
-    if (node.detects && counts.contains(node.name))
-      throw ConfigError(node.where + ": moves or turns objects and detects: give each a node");
-    if (!node.detects && !counts.contains(node.name))
+  for (const SensorConfig& sensor : scenario.sensors)
+    if (const auto& detector = sensor.detector)
+      give_inner_role(scenario, detector->node, detector->where, OwnNodeRole::detector,
+                      "a sensor starts its detector", "detector is asked for each frame");
+  if (const auto& fusion = scenario.fusion; fusion && !fusion->node.empty())
+    give_inner_role(scenario, fusion->node, fusion->node_where, OwnNodeRole::tracker,
+                    "the fusion node starts its tracker", "tracker is asked at each tick");
+  for (const OwnNode& node : scenario.own_nodes)
+    if (node.role == OwnNodeRole::none)
       throw ConfigError(node.where + ": moves and turns no object (motion: {node: " + node.name +
-                        "}), and no sensor detects by it (detection: {node: " + node.name + "})");
-  }
+                        "}), no sensor detects by it (detection: {node: " + node.name +
+                        "}), and it makes no tracks (fusion: {node: " + node.name + "})");
 }
 
 }  // namespace
@@ -281,8 +287,8 @@ const Section& scenario_section() {
       {required("simulation", form::map(simulation_section), "The run."),
        optional("objects", objects_forms(), "Catalogues of objects, and objects of one's own."),
        optional("nodes", own_nodes_forms(),
-                "Programs of one's own that take part in the run: they move objects, or detect in "
-                "the frames of sensors."),
+                "Programs of one's own that take part in the run: they move objects, detect in "
+                "the frames of sensors, or make the tracks."),
        optional("stars", form::map(stars_section), "The stars; without it there are none."),
        required("sensors", form::list(form::map(sensor_section), 1), "The sensors, at least one."),
        optional("accuracy", accuracy_forms(), "How accurate frames must be, for all sensors.",
@@ -339,7 +345,6 @@ Scenario read_scenario(const YamlValue& root) {
           if (const auto fault = names.fault_of(name->text())) name->fail(*fault);
     scenario.own_nodes = read_own_nodes(*nodes);
   }
-  assign_own_nodes(scenario);
   for (auto& sensor : scenario.sensors) {
     sensor.synthetic_stars_to_v_mag = scenario.synthetic_stars_to_v_mag;
     for (const auto& line : sensor.camera.warnings)
@@ -358,6 +363,7 @@ Scenario read_scenario(const YamlValue& root) {
     if (std::ranges::none_of(scenario.sensors, &SensorConfig::detect))
       fusion->fail("needs a sensor that detects", false);
   }
+  assign_own_nodes(scenario);
   for (const SensorConfig& sensor : scenario.sensors) check_cued(scenario, sensor);
   if (scenario.output.positions_enu && !scenario.earth.origin)
     throw ConfigError(scenario.output.positions_where + ": enu needs simulation.origin");

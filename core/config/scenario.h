@@ -193,6 +193,8 @@ struct OutputConfig {
 /// Tracks from the detections of all sensors, by a node of its own.
 struct FusionConfig {
   FusionSettings settings;
+  std::string node;                           // that makes the tracks; empty: our own
+  std::string node_where;                     // `file:line:column: fusion.node`, for messages
   Tick cue_delay_ticks = 2;                   // between the tick of a task and its beginning, >= 1
   std::vector<std::string> not_in_catalogue;  // names or numbers of objects that it does not know
   std::vector<std::string> not_in_catalogue_where = {};  // of each, for messages

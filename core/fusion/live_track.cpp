@@ -9,9 +9,9 @@ namespace {
 constexpr double most_log_odds = 12.0;  // a long track is given up within a dozen looks, too
 constexpr double standard_range_m = 1e6;
 
-double brightness_offset(double range_m) { return 5 * std::log10(range_m / standard_range_m); }
-
 }  // namespace
+
+double brightness_offset(double range_m) { return 5 * std::log10(range_m / standard_range_m); }
 
 LiveTrack::LiveTrack(std::uint32_t number, OrbitFilter&& start,
                      std::optional<std::size_t> of_catalogue)

@@ -47,6 +47,9 @@ struct LiveTrack {
   void miss(double detection_probability);
 };
 
+/// Magnitudes by which an object at this range is fainter than one 1000 km away.
+double brightness_offset(double range_m);
+
 /// The state of a track at a tick as it is published.
 Track published(const LiveTrack& track, SimTime time);
 

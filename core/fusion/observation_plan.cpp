@@ -20,6 +20,7 @@ constexpr double settled_within_s = 1e-3;  // between two of them
 constexpr double least_lit = 0.5;          // fraction of the Sun's disc
 constexpr double path_step_s = 10.0;       // cubic: to 3 mm
 constexpr double most_path_points = 1000;
+constexpr std::string_view too_fast = "it is faster than the mount";
 
 struct Place {
   Vec<Gcrs> sensor_m;
@@ -38,21 +39,24 @@ Vec<Gcrs> line_to(const OrbitState& state, const Vec<Gcrs>& sensor_m) {
   return line - state.velocity_m_per_s * (norm(line) / speed_of_light_m_per_s);
 }
 
-bool may_look(const CueSky& sky, const CueSettings& cue, const Place& place,
-              const OrbitState& state) {
+/// Why a sensor may not look at a state; empty if it may.
+std::string_view obstacle_of(const CueSky& sky, const CueSettings& cue, const Place& place,
+                             const OrbitState& state) {
   const Vec<Gcrs> line = line_to(state, place.sensor_m), direction = unit(line);
   const double height = (place.enu_from_gcrs * direction).z;
-  if (height < std::sin(cue.least_elevation_deg * deg) ||
-      (cue.greatest_elevation_deg < 90 && height > std::sin(cue.greatest_elevation_deg * deg)))
-    return false;
-  if (angle_rad(direction, sky.bodies.sun_m - place.sensor_m) < cue.sun_exclusion_deg * deg ||
-      angle_rad(direction, sky.bodies.moon_m - place.sensor_m) < cue.moon_exclusion_deg * deg)
-    return false;
+  if (height < std::sin(cue.least_elevation_deg * deg)) return "it is below the least elevation";
+  if (cue.greatest_elevation_deg < 90 && height > std::sin(cue.greatest_elevation_deg * deg))
+    return "it is above the greatest elevation";
+  if (angle_rad(direction, sky.bodies.sun_m - place.sensor_m) < cue.sun_exclusion_deg * deg)
+    return "it is too near the Sun";
+  if (angle_rad(direction, sky.bodies.moon_m - place.sensor_m) < cue.moon_exclusion_deg * deg)
+    return "it is too near the Moon";
   const Vec<Gcrs> across =
       state.velocity_m_per_s - direction * dot(state.velocity_m_per_s, direction);
   if (cue.mount == MountKind::great_circle && norm(across) / norm(line) > cue.slew_deg_per_s * deg)
-    return false;
-  return sky.shadow.sunlit_fraction(state.position_m) >= least_lit;
+    return too_fast;
+  return sky.shadow.sunlit_fraction(state.position_m) >= least_lit ? ""
+                                                                   : "it is in the Earth's shadow";
 }
 
 /// Derivatives of the angles east and north of a line with respect to the position.
@@ -104,13 +108,14 @@ double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& 
 
 namespace {
 
-/// A plan by one of the ways to the target, by their order; empty also if there are not so many.
-std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces, const CueSky& sky,
-                                       const CuedSensor& sensor, const CueTarget& target,
-                                       const MountPosition& from, SimTime start, SimTime last,
-                                       double best_detection_probability) {
+/// A plan by one of the ways to the target, by their order; refused also if there are not so many.
+Outcome<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces, const CueSky& sky,
+                                 const CuedSensor& sensor, const CueTarget& target,
+                                 const MountPosition& from, SimTime start, SimTime last,
+                                 double best_detection_probability) {
   const CueSettings& cue = sensor.cue;
   ObservationPlan plan{.start = start, .on_target = start + sim_seconds(cue.settle_s)};
+  const auto refused = Outcome<ObservationPlan>::refused;
   const auto direction_of = [](const Place& place, const OrbitState& state) {
     return place.enu_from_gcrs * unit(line_to(state, place.sensor_m));
   };
@@ -120,11 +125,11 @@ std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces
   bool settled = false;
   for (int turn = 0; turn < most_turns && !settled; ++turn) {
     const auto moved = propagate(forces, state, plan.on_target, propagation);
-    if (!moved) return std::nullopt;
+    if (!moved) return refused(moved.reason);
     state = *moved;
     const auto ways =
         slews_to(cue, from, direction_of(place_of(sky, sensor, plan.on_target), state));
-    if (ways.size() <= way) return std::nullopt;
+    if (ways.size() <= way) return refused("it is out of the mount's reach");
     mount = ways[way].to;
     plan.slew_rad = ways[way].angle_rad;
     plan.slew_s = ways[way].seconds + cue.settle_s;
@@ -132,23 +137,27 @@ std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces
     settled = (ready - plan.on_target).seconds() < settled_within_s;
     plan.on_target = std::max(plan.on_target, ready);
   }
-  if (!settled) return std::nullopt;  // it is about as fast as the mount
+  if (!settled) return refused(too_fast);  // or about as fast
   plan.first_frame = sensor.first_frame_from(plan.on_target);
   const SimTime exposure = sim_seconds(sensor.exposure_s), half{exposure.ns / 2};
 
   auto at = propagate(forces, target.estimate, plan.on_target, propagation);
-  if (!at || !is_sane(*at)) return std::nullopt;
+  if (!at) return refused(at.reason);
+  if (!is_sane(*at)) return refused("its path can't be predicted");
   plan.at = *at;
   Matrix6 transition = Matrix6::Identity();
   OrbitState seen = target.estimate.state;
   SimTime followed_to = plan.on_target;
+  std::string_view obstacle = "the run ends before";
   for (int n = 0; n < cue.exposures; ++n) {
     const SimTime begins = sensor.exposure_start(plan.first_frame + std::uint32_t(n));
     if (begins + exposure > last) break;
     const auto step = propagate_with_transition(forces, seen, begins + half, propagation);
+    obstacle = step.reason;
     if (!step) break;
     const Place place = place_of(sky, sensor, begins + half);
-    if (!may_look(sky, cue, place, step->state)) break;
+    obstacle = obstacle_of(sky, cue, place, step->state);
+    if (!obstacle.empty()) break;
     const Vec<Enu> direction = direction_of(place, step->state);
     // Begin and end of the exposure tell how fast the axes turn in it.
     std::optional<MountPosition> follows = mount;
@@ -161,6 +170,7 @@ std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces
       if (!follows) break;
       followed_to = t;
     }
+    obstacle = too_fast;  // or beyond the range of its azimuth
     if (!follows) break;
     mount = *follows;
     seen = step->state;
@@ -182,24 +192,23 @@ std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces
         plan.in_field * chance(target.magnitude, norm(line_to(seen, place.sensor_m)),
                                cue.limiting_magnitude, best_detection_probability);
   }
-  if (plan.exposures == 0) return std::nullopt;
+  if (plan.exposures == 0) return refused(obstacle);
   return plan;
 }
 
-constexpr std::size_t most_ways = 2;  // if the faster leads to a limit of the axes
-
 }  // namespace
 
-std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
-                                                const CuedSensor& sensor, const CueTarget& target,
-                                                const MountPosition& from, SimTime start,
-                                                SimTime last, double best_detection_probability) {
-  const std::size_t ways = sensor.cue.mount == MountKind::great_circle ? 1 : most_ways;
-  for (std::size_t way = 0; way < ways; ++way)
-    if (auto plan = plan_by(way, forces, sky, sensor, target, from, start, last,
-                            best_detection_probability))
-      return plan;
-  return std::nullopt;
+Outcome<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
+                                          const CuedSensor& sensor, const CueTarget& target,
+                                          const MountPosition& from, SimTime start, SimTime last,
+                                          double best_detection_probability) {
+  const auto by = [&](std::size_t way) {
+    return plan_by(way, forces, sky, sensor, target, from, start, last, best_detection_probability);
+  };
+  auto plan = by(0);
+  if (plan || sensor.cue.mount == MountKind::great_circle) return plan;
+  auto other = by(1);  // if the faster way leads to a limit of the axes
+  return other ? other : plan;
 }
 
 Matrix6 information_of(const ForceModel& forces, const CueSky& sky, const CuedSensor& sensor,

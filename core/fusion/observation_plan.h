@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/frames/earth_orientation.h"
@@ -14,6 +15,7 @@
 #include "core/time/clock.h"
 #include "core/tracking/forces.h"
 #include "core/tracking/orbit_state.h"
+#include "core/tracking/outcome.h"
 
 namespace dmise {
 
@@ -25,6 +27,16 @@ struct CueTarget {
   double existence = 1.0;  // probability
   double magnitude = 0.0;  // as if 1000 km away
   OrbitEstimate estimate;
+};
+
+/// A track that a sensor is to observe, as a tracker wishes.
+struct CueWish {
+  std::string sensor;
+  std::uint32_t track = 0;
+  std::uint32_t exposures = 0;  // most of the task; 0: as many as the sensor's settings say
+  std::string_view obstacle{};  // why there is no task: "it is busy"; a scheduler sets it
+
+  bool operator==(const CueWish&) const = default;
 };
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -52,13 +64,13 @@ struct ObservationPlan {
   double seconds() const { return (end - start).seconds(); }
 };
 
-/// Plans exposures of a target by a sensor whose mount stands at `from` until `start`. Empty if it
-/// can't be observed: out of reach of the mount, in the shadow, near the Sun or the Moon, faster
-/// than the mount, or after `last`.
-std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
-                                                const CuedSensor& sensor, const CueTarget& target,
-                                                const MountPosition& from, SimTime start,
-                                                SimTime last, double best_detection_probability);
+/// Plans exposures of a target by a sensor whose mount stands at `from` until `start`. Refuses
+/// one that can't be observed: out of reach of the mount, in the shadow, near the Sun or the Moon,
+/// faster than the mount, or after `last`.
+Outcome<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
+                                          const CuedSensor& sensor, const CueTarget& target,
+                                          const MountPosition& from, SimTime start, SimTime last,
+                                          double best_detection_probability);
 
 /// Estimates the rate at which a plan would gain information [nats/s], by two-body motion and one
 /// exposure, so that few targets need a plan. 0 below the horizon.

@@ -48,6 +48,21 @@ std::vector<Scheduler::Option> Scheduler::options(const CueSky& sky, const Mount
   return out;
 }
 
+std::vector<Scheduler::Option> Scheduler::wished(const CueSky& sky, const Mount& mount,
+                                                 SimTime start, std::span<const CueTarget> targets,
+                                                 CueWish& wish) const {
+  CuedSensor sensor = mount.sensor;
+  if (wish.exposures > 0) sensor.cue.exposures = int(wish.exposures);
+  const auto target = std::ranges::find(targets, wish.track, &CueTarget::track);
+  wish.obstacle = "its path can't be predicted";
+  if (target == targets.end()) return {};
+  auto plan = plan_observation(forces_, sky, sensor, *target, mount.position, start, last_,
+                               best_detection_probability_);
+  wish.obstacle = plan.reason;
+  if (!plan) return {};
+  return {{&*target, std::move(*plan), 0.0}};
+}
+
 Matrix6 Scheduler::known_of(const CueSky& sky, const CueTarget& target) const {
   Matrix6 known = Matrix6::Zero();
   for (const Task& task : pending_) {
@@ -107,11 +122,14 @@ Task Scheduler::task_of(const Mount& mount, const std::vector<Option>& options, 
 }
 
 std::vector<Task> Scheduler::step(SimTime now, SimTime begin, SimTime next,
-                                  std::span<const CueTarget> targets) {
+                                  std::span<const CueTarget> targets,
+                                  std::vector<CueWish>* wishes) {
   // What a task finds is known some ticks after its end.
   const SimTime known{now.ns - heard_after_ticks * (next - begin).ns};
   std::erase_if(pending_, [&](const Task& t) { return t.end <= known; });
   std::vector<Task> out;
+  if (wishes)
+    for (CueWish& w : *wishes) w.obstacle = begin < last_ ? "it is busy" : "the run ends before";
   if (!is_asked(begin, next)) return out;
   const CueSky sky(clock_, begin, mounts_.front().sensor.site.ellipsoid);
   struct Free {
@@ -121,14 +139,20 @@ std::vector<Task> Scheduler::step(SimTime now, SimTime begin, SimTime next,
   std::vector<Free> free;
   for (Mount& mount : mounts_) {
     if (mount.free >= next) continue;
-    free.push_back({&mount, options(sky, mount, std::max(begin, mount.free), targets)});
+    const SimTime start = std::max(begin, mount.free);
+    if (!wishes) free.push_back({&mount, options(sky, mount, start, targets)});
+    if (wishes) {
+      const auto wish = std::ranges::find(*wishes, mount.sensor.name, &CueWish::sensor);
+      if (wish == wishes->end()) continue;
+      free.push_back({&mount, wished(sky, mount, start, targets, *wish)});
+    }
     weigh(sky, free.back().options, 0);
   }
   for (;;) {
-    std::erase_if(free, [](const Free& f) {
+    std::erase_if(free, [&](const Free& f) {
       return f.options.empty() ||
-             f.options.front().gain_nats < f.mount->sensor.cue.least_gain_nats ||
-             !(f.options.front().gain_nats > 0);
+             (!wishes && (f.options.front().gain_nats < f.mount->sensor.cue.least_gain_nats ||
+                          !(f.options.front().gain_nats > 0)));
     });
     if (free.empty()) break;
     const auto first =

@@ -25,8 +25,11 @@ class Scheduler {
   bool is_asked(SimTime begin, SimTime next) const;
 
   /// Tasks that begin at `begin` or later, before `next`, by id. `now`: the time of the tick.
+  /// With `wishes`, at most one for a sensor, tasks are those alone, whatever they gain; a wish
+  /// without a task has its obstacle set.
   std::vector<Task> step(SimTime now, SimTime begin, SimTime next,
-                         std::span<const CueTarget> targets);
+                         std::span<const CueTarget> targets,
+                         std::vector<CueWish>* wishes = nullptr);
 
  private:
   struct Mount {
@@ -42,6 +45,9 @@ class Scheduler {
   };
   std::vector<Option> options(const CueSky& sky, const Mount& mount, SimTime start,
                               std::span<const CueTarget> targets) const;
+  /// The one that is wished; else sets the obstacle.
+  std::vector<Option> wished(const CueSky& sky, const Mount& mount, SimTime start,
+                             std::span<const CueTarget> targets, CueWish& wish) const;
   void weigh(const CueSky& sky, std::vector<Option>& options, std::uint32_t of_track) const;
   Matrix6 known_of(const CueSky& sky, const CueTarget& target) const;
   Task task_of(const Mount& mount, const std::vector<Option>& options, SimTime now);

@@ -1,20 +1,35 @@
 #include "nodes/fusion/fusion_evaluator.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/object_names.h"
-#include "core/optics/projection.h"
 #include "core/products/frame_report.h"
 #include "core/products/task_json.h"
 #include "core/products/track_json.h"
 #include "core/time/iso8601.h"
+#include "nodes/fusion/filter_tracker.h"
+#include "nodes/fusion/own_tracker.h"
 
 namespace dmise {
 namespace {
 
-constexpr double axis_slack_rad = 0.01;  // the boresight of a report is that of the stars
+/// Frames with their detections, by sensor and number.
+std::vector<SearchedFrame> searched_frames(std::span<const Message> inputs) {
+  std::map<std::pair<std::string, std::uint32_t>, SearchedFrame> frames;
+  for (const Message& message : inputs) {
+    if (const auto* report = std::get_if<FrameReport>(message.state.get()))
+      frames[{report->sensor, report->frame}].report = report;
+    if (const auto* set = std::get_if<DetectionSet>(message.state.get()))
+      frames[{set->sensor, set->frame}].found = set;
+  }
+  std::vector<SearchedFrame> out;
+  for (const auto& [key, frame] : frames)
+    if (frame.report && frame.found) out.push_back(frame);  // else one of them was lost
+  return out;
+}
 
 }  // namespace
 
@@ -40,25 +55,24 @@ std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor) {
 }
 
 FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
-                                 const std::string& directory)
+                                 const std::string& directory, OwnNodeSettings settings)
     : scenario_(scenario),
       clock_(std::move(clock)),
       directory_(directory),
+      settings_(std::move(settings)),
       journal_(fusion_journal_path(directory)) {
   std::vector<CuedSensor> cued;
-  for (const SensorConfig& sensor : scenario.sensors) {
+  for (const SensorConfig& sensor : scenario.sensors)
     if (auto one = cued_sensor(sensor)) {
       cued_.push_back(one->name);
       cued.push_back(std::move(*one));
     }
-    if (!sensor.detect) continue;
-    const Optics& optics = sensor.camera.optics;
-    cameras_[sensor.name] = {optics.columns, optics.rows,
-                             std::min(half_diagonal_rad(optics) + axis_slack_rad, pi)};
-  }
   if (!cued.empty())
     scheduler_.emplace(clock_, SimTime{scenario.duration.ns / 2}, std::move(cued),
                        scenario.duration, scenario.fusion->settings.detection_probability);
+  if (scenario.fusion->node.empty()) return;
+  settings_.log_path = directory + "/logs/" + scenario.fusion->node + ".log";
+  settings_.error_prefix += scenario.fusion->node + ": ";
 }
 
 std::vector<std::string> FusionEvaluator::produces() const {
@@ -69,63 +83,72 @@ std::vector<std::string> FusionEvaluator::produces() const {
 
 std::vector<std::string> FusionEvaluator::consumes() const {
   std::vector<std::string> topics{roster_topic};
-  for (const auto& [sensor, camera] : cameras_)
-    for (const char* prefix : {frame_prefix, detection_prefix}) topics.push_back(prefix + sensor);
+  for (const SensorConfig& sensor : scenario_.sensors)
+    for (const char* prefix : {frame_prefix, detection_prefix})
+      if (sensor.detect) topics.push_back(prefix + sensor.name);
   return topics;
 }
 
 void FusionEvaluator::start_with(const ObjectRoster& roster) {
-  const FusionConfig& config = *scenario_.fusion;
-  std::vector<MeanElements> catalogue;
+  ObjectRoster known;
   for (std::size_t i = 0; i < roster.elements.size(); ++i) {
-    if (std::ranges::any_of(config.not_in_catalogue,
+    if (std::ranges::any_of(scenario_.fusion->not_in_catalogue,
                             [&](const auto& name) { return is_called(roster.objects[i], name); }))
       continue;
-    catalogue.push_back(roster.elements[i]);
-    catalogue.back().catalogue_number = roster.objects[i].catalogue_number;
-    catalogue.back().name = roster.objects[i].name;
+    known.objects.push_back(roster.objects[i]);
+    known.elements.push_back(roster.elements[i]);
   }
-  fusion_.emplace(std::move(catalogue), clock_, SimTime{scenario_.duration.ns / 2},
-                  config.settings);
+  if (scenario_.fusion->node.empty()) {
+    tracker_ = std::make_unique<FilterTracker>(scenario_, known, clock_);
+    return;
+  }
+  const auto replay = [this](Tick from, Tick before, const OwnTracker::Again& again) {
+    journal_.replay(from, before, [&](Tick tick, std::span<const Message> inputs) {
+      ++progress_;
+      again(tick, searched_frames(inputs));
+    });
+  };
+  tracker_ = std::make_unique<OwnTracker>(scenario_, known, clock_, settings_, replay);
 }
 
-FusionEvaluator::Found FusionEvaluator::fuse(Tick tick, std::span<const Message> inputs) {
-  std::map<std::pair<std::string, std::uint32_t>,
-           std::pair<const FrameReport*, const DetectionSet*>>
-      exposures;
-  for (const Message& message : inputs) {
+std::optional<FusionEvaluator::Found> FusionEvaluator::fuse(Tick tick,
+                                                            std::span<const Message> inputs) {
+  for (const Message& message : inputs)
     if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
-      if (!fusion_) start_with(*roster);
-    if (const auto* report = std::get_if<FrameReport>(message.state.get()))
-      exposures[{report->sensor, report->frame}].first = report;
-    if (const auto* set = std::get_if<DetectionSet>(message.state.get()))
-      exposures[{set->sensor, set->frame}].second = set;
-  }
-  std::vector<SensorFrame> frames;
-  for (const auto& [key, exposure] : exposures) {
-    const auto& [report, set] = exposure;
-    if (!report || !set) continue;  // one of them was lost
-    const Camera& camera = cameras_.at(key.first);
-    frames.push_back(sensor_frame(*report, set->detections, camera.columns, camera.rows,
-                                  camera.half_angle_rad,
-                                  scenario_.fusion->settings.pointing_sigma_arcsec * arcsec));
-  }
-  TrackSet out{.tick = tick, .time = scenario_.time_of(tick), .node = fusion_node};
-  if (!fusion_) throw Error("no roster came before tick " + std::to_string(tick));
-  FusionTick found = fusion_->step(out.time, std::move(frames));
-  out.live = found.live;
-  out.unassociated = found.unassociated;
-  out.tracks = std::move(found.tracks);
+      if (!tracker_) start_with(*roster);
+  if (!tracker_) throw Error("no roster came before tick " + std::to_string(tick));
+  auto tracked = tracker_->step(tick, searched_frames(inputs));
   ++progress_;
-  return {std::move(out), tasks_of(tick)};
+  if (!tracked) return std::nullopt;
+  FusionTick& found = tracked->tracks;
+  return Found{.tracks = {.tick = tick,
+                          .time = scenario_.time_of(tick),
+                          .node = fusion_node,
+                          .live = found.live,
+                          .unassociated = found.unassociated,
+                          .tracks = std::move(found.tracks)},
+               .tasks = tasks_of(tick, tracked->wishes ? &*tracked->wishes : nullptr)};
 }
 
-std::vector<Task> FusionEvaluator::tasks_of(Tick tick) {
+std::vector<Task> FusionEvaluator::tasks_of(Tick tick, std::vector<CueWish>* wishes) {
+  if (!scheduler_) return {};
   const Tick delay = scenario_.fusion->cue_delay_ticks;
   const SimTime begin = scenario_.time_of(tick + delay), next = scenario_.time_of(tick + delay + 1);
-  if (!scheduler_ || !scheduler_->is_asked(begin, next)) return {};
+  const bool asked = scheduler_->is_asked(begin, next) && !(wishes && wishes->empty());
+  if (!asked && !wishes) return {};
   const SimTime now = scenario_.time_of(tick);
-  return scheduler_->step(now, begin, next, fusion_->targets(now));
+  auto tasks = scheduler_->step(now, begin, next,
+                                asked ? tracker_->targets(now) : std::vector<CueTarget>{}, wishes);
+  if (wishes) note_obstacles(tick, *wishes);
+  return tasks;
+}
+
+void FusionEvaluator::note_obstacles(Tick tick, const std::vector<CueWish>& wishes) {
+  for (const CueWish& wish : wishes)
+    if (!wish.obstacle.empty() && noted_.insert({wish.sensor, wish.obstacle}).second)
+      settings_.note(scenario_.fusion->node + ": " + wish.sensor + " can't observe track " +
+                     std::to_string(wish.track) + " of tick " + std::to_string(tick) + ": " +
+                     std::string(wish.obstacle));
 }
 
 void FusionEvaluator::open_files(Tick tick) {
@@ -159,9 +182,12 @@ std::vector<Message> FusionEvaluator::step(Tick tick, std::span<const Message> i
   // A process that continues a run receives the roster again; the journal has it already.
   std::vector<Message> fresh;
   for (const Message& message : inputs)
-    if (!fusion_ || !std::holds_alternative<ObjectRoster>(*message.state)) fresh.push_back(message);
+    if (!tracker_ || !std::holds_alternative<ObjectRoster>(*message.state))
+      fresh.push_back(message);
   journal_.add(fresh);
-  Found found = fuse(tick, fresh);
+  auto fused = fuse(tick, fresh);
+  if (!fused) return {};  // the tick stays without its end in the journal
+  Found& found = *fused;
   write(found);
   journal_.end(tick);
   const SimTime time = found.tracks.time;

@@ -1,17 +1,21 @@
 #pragma once
 #include <atomic>
-#include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/config/node_kinds.h"
-#include "core/fusion/fusion.h"
 #include "core/fusion/scheduler.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
 #include "nodes/fusion/fusion_journal.h"
 #include "nodes/fusion/line_file.h"
+#include "nodes/fusion/tracker.h"
+#include "nodes/own/own_node_run.h"
 
 namespace dmise {
 
@@ -24,8 +28,10 @@ std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor);
 /// writes them to tasks.jsonl.
 class FusionEvaluator : public Evaluator {
  public:
-  /// The scenario must have `fusion`. Throws `Error` if `directory` cannot be written.
-  FusionEvaluator(const Scenario& scenario, Clock clock, const std::string& directory);
+  /// The scenario must have `fusion`. Throws `Error` if `directory` cannot be written. `settings`:
+  /// of the program that makes the tracks, if the scenario names one.
+  FusionEvaluator(const Scenario& scenario, Clock clock, const std::string& directory,
+                  OwnNodeSettings settings = {});
 
   std::string name() const override { return fusion_node; }
   std::vector<std::string> produces() const override;
@@ -39,29 +45,29 @@ class FusionEvaluator : public Evaluator {
   std::uint64_t progress() const override { return progress_; }
 
  private:
-  struct Camera {
-    int columns = 0, rows = 0;
-    double half_angle_rad = 0.0;
-  };
-  /// Starts the fusion with the roster's objects but for those of `not_in_catalogue`.
+  /// Makes the tracker, with the roster's objects that have elements but for those of
+  /// `not_in_catalogue`.
   void start_with(const ObjectRoster& roster);
   struct Found {
     TrackSet tracks;
     std::vector<Task> tasks;
   };
-  Found fuse(Tick tick, std::span<const Message> inputs);
-  std::vector<Task> tasks_of(Tick tick);
+  /// Nothing after the stop.
+  std::optional<Found> fuse(Tick tick, std::span<const Message> inputs);
+  std::vector<Task> tasks_of(Tick tick, std::vector<CueWish>* wishes);
+  void note_obstacles(Tick tick, const std::vector<CueWish>& wishes);
   void open_files(Tick tick);
   void write(const Found& found);
 
   Scenario scenario_;
   Clock clock_;
   std::string directory_;
-  std::map<std::string, Camera> cameras_;
-  std::optional<Fusion> fusion_;  // once the roster is known
+  OwnNodeSettings settings_;
+  std::unique_ptr<Tracker> tracker_;  // once the roster is known
   FusionJournal journal_;
   std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
+  std::set<std::pair<std::string, std::string_view>> noted_;  // sensors and obstacles
   std::optional<LineFile> tracks_, tasks_;
   bool begun_ = false;
   std::atomic<std::uint64_t> progress_{0};

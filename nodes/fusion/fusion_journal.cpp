@@ -37,7 +37,7 @@ struct Record {
 };
 
 /// Reads the next record; false at the end or at an incomplete one.
-bool read(std::ifstream& file, Record& record) {
+bool read_record(std::ifstream& file, Record& record) {
   if (!file.read(reinterpret_cast<char*>(&record.head), sizeof record.head)) return false;
   const Head& h = record.head;
   if (h.topic > max_topic_bytes || h.payload > max_payload_bytes || h.arrays > max_array_bytes)
@@ -80,28 +80,38 @@ void FusionJournal::open(const char* mode) {
 
 void FusionJournal::clear() { open("wb"); }
 
+std::uintmax_t FusionJournal::read(
+    Tick from, Tick before,
+    const std::function<void(Tick, std::span<const Message>)>& again) const {
+  std::uintmax_t whole = 0;
+  std::ifstream file(path_, std::ios::binary);
+  std::vector<Message> inputs;
+  Record record;
+  Tick next = 0;
+  while (next < before && read_record(file, record)) {
+    if (record.head.kind != 0) {
+      if (next >= from) inputs.push_back(message_of(record));
+      continue;
+    }
+    if (record.head.tick != next) fail("tick " + std::to_string(next) + " is missing");
+    if (next++ >= from) again(next - 1, inputs);
+    inputs.clear();
+    whole = std::uintmax_t(file.tellg());
+  }
+  if (next < before)
+    fail("ends before tick " + std::to_string(next) + ", and the run continues at " +
+         std::to_string(before) + ": start the run from its beginning");
+  return whole;
+}
+
+void FusionJournal::replay(Tick from, Tick before,
+                           const std::function<void(Tick, std::span<const Message>)>& again) const {
+  read(from, before, again);
+}
+
 void FusionJournal::resume(Tick tick,
                            const std::function<void(Tick, std::span<const Message>)>& again) {
-  std::uintmax_t whole = 0;
-  Tick next = 0;
-  {
-    std::ifstream file(path_, std::ios::binary);
-    std::vector<Message> inputs;
-    Record record;
-    while (next < tick && read(file, record)) {
-      if (record.head.kind != 0) {
-        inputs.push_back(message_of(record));
-        continue;
-      }
-      if (record.head.tick != next) fail("tick " + std::to_string(next) + " is missing");
-      again(next++, inputs);
-      inputs.clear();
-      whole = std::uintmax_t(file.tellg());
-    }
-  }
-  if (next < tick)
-    fail("ends before tick " + std::to_string(next) + ", and the run continues at " +
-         std::to_string(tick) + ": start the run from its beginning");
+  const std::uintmax_t whole = read(0, tick, again);
   open("ab");
   if (::truncate(path_.c_str(), off_t(whole)) != 0)
     fail(std::string("can't be truncated: ") + std::strerror(errno));
@@ -132,7 +142,7 @@ Tick FusionJournal::ticks_written(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   Record record;
   Tick next = 0;
-  while (read(file, record))
+  while (read_record(file, record))
     if (record.head.kind == 0) {
       if (record.head.tick != next) break;
       ++next;

@@ -23,6 +23,10 @@ class FusionJournal {
   /// Calls `again` for each tick before `tick`, and writes after them from then on. Throws `Error`
   /// if the journal ends before.
   void resume(Tick tick, const std::function<void(Tick, std::span<const Message>)>& again);
+  /// Calls `again` for each tick from `from` to the one before `before`. Throws `Error` if the
+  /// journal ends before.
+  void replay(Tick from, Tick before,
+              const std::function<void(Tick, std::span<const Message>)>& again) const;
   void add(std::span<const Message> inputs);
   /// Writes the end of a tick.
   void end(Tick tick);
@@ -31,6 +35,9 @@ class FusionJournal {
   static Tick ticks_written(const std::string& path);
 
  private:
+  /// Returns the bytes up to the end of the last tick.
+  std::uintmax_t read(Tick from, Tick before,
+                      const std::function<void(Tick, std::span<const Message>)>& again) const;
   void open(const char* mode);
   [[noreturn]] void fail(const std::string& reason) const;
 

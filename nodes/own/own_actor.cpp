@@ -11,7 +11,6 @@
 namespace dmise {
 namespace {
 
-constexpr Tick checkpoint_every = 64;          // calls
 constexpr Tick max_ahead = 16;                 // calls
 constexpr std::size_t states_ahead = 100'000;  // of objects: 7 MB
 constexpr std::size_t calls_held = 3;          // for joining two, and for the error between three
@@ -85,9 +84,9 @@ bool OwnActor::hear_up_to(Tick call) {
       if (!hear()) return false;
     } catch (const ProgramLost& lost) {
       program_.reset();
-      restarts_.after(lost, "tick " + std::to_string(tick_of(next_call_)));
+      restarts_.after(lost, "tick " + std::to_string(tick_of(said_.next())));
     } catch (const Error& error) {
-      throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(next_call_)) + ": " +
+      throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(said_.next())) + ": " +
                   error.what());
     }
     ++steps_;
@@ -102,10 +101,9 @@ bool OwnActor::hear() {
   if (!stepped) return false;
   check(stepped->states);
   look_at_places(stepped->states, asked_.front().earth);
-  require_same(stepped->digest);
-  if (stepped->checkpoint) checkpoint_ = {next_call_, std::move(*stepped->checkpoint)};
+  const Tick tick = tick_of(said_.next());
+  said_.add(stepped->digest, std::move(stepped->checkpoint), "states");
   asked_.pop_front();
-  const Tick tick = tick_of(next_call_++);
   if (!held_.empty() && held_.back().tick >= tick) return true;  // said before
   held_.push_back(std::move(stepped->states));
   if (held_.size() > calls_held) held_.pop_front();
@@ -115,13 +113,13 @@ bool OwnActor::hear() {
 
 bool OwnActor::ask() {
   if (asked_.empty()) {
-    asked_.push_back(environment_of(next_call_));
-    if (!program_->ask(step_of(next_call_), asked_.back())) return false;
+    asked_.push_back(environment_of(said_.next()));
+    if (!program_->ask(step_of(said_.next()), asked_.back())) return false;
   }
   const Tick ahead = calls_ahead(scenario_, objects_.size());
   if (Tick(asked_.size()) > ahead / 2) return true;  // the next ones go together
   const Tick last = (scenario_.last_tick() + node_.period_ticks - 1) / node_.period_ticks;
-  for (Tick call = next_call_ + Tick(asked_.size()); call <= std::min(next_call_ + ahead, last);
+  for (Tick call = said_.next() + Tick(asked_.size()); call <= std::min(said_.next() + ahead, last);
        ++call) {
     EnvironmentState environment = environment_of(call);
     if (!program_->ask_ahead(step_of(call), environment)) break;
@@ -134,7 +132,7 @@ v1::OwnNodeStep OwnActor::step_of(Tick call) const {
   v1::OwnNodeStep step;
   step.set_tick(tick_of(call));
   step.set_time_ns(scenario_.time_of(tick_of(call)).ns);
-  step.set_give_checkpoint(call % checkpoint_every == checkpoint_every - 1);
+  step.set_give_checkpoint(OwnRecord::wants_checkpoint(call));
   return step;
 }
 
@@ -151,18 +149,18 @@ v1::OwnNodeBegin OwnActor::begin() const {
     one.set_moved(is_moved_by(node_, *object));
     one.set_turned(is_turned_by(node_, *object));
   }
-  if (checkpoint_) begin.set_checkpoint(checkpoint_->bytes);
   return begin;
 }
 
 void OwnActor::start() {
-  next_call_ = checkpoint_ ? checkpoint_->call + 1 : 0;
   asked_.clear();
-  program_.emplace(program_settings(scenario_, node_, settings_), begin(), restarts_.any());
+  v1::OwnNodeBegin told = begin();
+  said_.continue_at(told);
+  program_.emplace(program_settings(scenario_, node_, settings_), std::move(told), restarts_.any());
 }
 
 void OwnActor::check(const ObjectStates& states) const {
-  const Tick tick = tick_of(next_call_);
+  const Tick tick = tick_of(said_.next());
   if (states.tick != tick || states.time != scenario_.time_of(tick))
     throw Error("its states are of tick " + std::to_string(states.tick) + ", " +
                 formatted("%.9g", states.time.seconds()) + " s");
@@ -190,16 +188,6 @@ void OwnActor::look_at_places(const ObjectStates& states, const EarthOrientation
             " is not in the scene at tick %ld: %.6g m from the Earth's centre is under the ground",
             long(states.tick), norm(states.position(i))));
   }
-}
-
-/// A program that was started again repeats what it said.
-void OwnActor::require_same(std::uint64_t digest) {
-  const auto call = std::size_t(next_call_);
-  if (call == digests_.size()) return digests_.push_back(digest);
-  if (digests_[call] != digest)
-    throw Error(
-        "started again, its program says something else of this tick than before: its "
-        "states must be the same in each run");
 }
 
 /// Warns of objects whose paths between ticks are not what the planner takes them for.

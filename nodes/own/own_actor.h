@@ -26,10 +26,6 @@ class OwnActor : public Actor {
   std::uint64_t progress() const override { return steps_; }
 
  private:
-  struct Checkpoint {
-    Tick call = 0;
-    std::string bytes;
-  };
   /// Hears the states of all calls up to this one that it has not; false after the stop.
   bool hear_up_to(Tick call);
   bool hear();
@@ -39,7 +35,6 @@ class OwnActor : public Actor {
   EnvironmentState environment_of(Tick call) const;
   void start();
   void check(const ObjectStates& states) const;
-  void require_same(std::uint64_t digest);
   void look_at_errors();
   void look_at_places(const ObjectStates& states, const EarthOrientation& earth);
   v1::OwnNodeBegin begin() const;
@@ -53,11 +48,9 @@ class OwnActor : public Actor {
   std::vector<const OwnObject*> objects_;  // in the scenario's order
   std::vector<std::uint32_t> turned_;      // of these, by index
   std::optional<OwnProgram> program_;
-  Tick next_call_ = 0;                  // whose answer is heard next
-  std::deque<EnvironmentState> asked_;  // of the calls from this one on that the program knows of
-  std::vector<std::uint64_t> digests_;  // of what it said, by call
-  std::optional<Checkpoint> checkpoint_;
-  std::deque<ObjectStates> held_;  // of the last calls
+  OwnRecord said_;
+  std::deque<EnvironmentState> asked_;  // of the calls from the next on that the program knows of
+  std::deque<ObjectStates> held_;       // of the last calls
   OwnRestarts restarts_;
   std::vector<bool> warned_;       // of objects that are not interpolated well
   std::vector<bool> underground_;  // those that were told to be

@@ -3,6 +3,11 @@
 #include <utility>
 
 namespace dmise {
+namespace {
+
+constexpr Tick checkpoint_every = 64;  // calls
+
+}  // namespace
 
 v1::OwnNodeBegin begin_of(const Scenario& scenario, const OwnNode& node) {
   v1::OwnNodeBegin begin;
@@ -26,6 +31,26 @@ ProgramSettings program_settings(const Scenario& scenario, const OwnNode& node,
                           .stop = settings.stop};
   program.command[0] = program_of(node);
   return program;
+}
+
+bool OwnRecord::wants_checkpoint(Tick call) {
+  return call % checkpoint_every == checkpoint_every - 1;
+}
+
+void OwnRecord::continue_at(v1::OwnNodeBegin& begin) {
+  next_ = checkpoint_at_;
+  if (checkpoint_) begin.set_checkpoint(*checkpoint_);
+}
+
+void OwnRecord::add(std::uint64_t digest, std::optional<std::string> checkpoint, const char* what) {
+  if (next_ == Tick(digests_.size())) digests_.push_back(digest);
+  if (digests_[std::size_t(next_)] != digest)
+    throw Error("started again, its program says something else of this tick than before: its " +
+                std::string(what) + " must be the same in each run");
+  ++next_;
+  if (!checkpoint) return;
+  checkpoint_ = std::move(checkpoint);
+  checkpoint_at_ = next_;
 }
 
 OwnRestarts::OwnRestarts(const NetworkConfig& network, std::string node,

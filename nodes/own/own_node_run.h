@@ -1,6 +1,9 @@
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/config/scenario.h"
 #include "nodes/own/own_program.h"
@@ -20,6 +23,26 @@ v1::OwnNodeBegin begin_of(const Scenario& scenario, const OwnNode& node);
 
 ProgramSettings program_settings(const Scenario& scenario, const OwnNode& node,
                                  const OwnNodeSettings& settings);
+
+/// What a program has said, call by call: one that was started again continues from its last
+/// checkpoint and must say the same.
+class OwnRecord {
+ public:
+  /// Of the next call of the program.
+  Tick next() const { return next_; }
+  /// Whether a checkpoint is asked for with a call.
+  static bool wants_checkpoint(Tick call);
+  /// Goes back to where a program that is started continues, and tells it so.
+  void continue_at(v1::OwnNodeBegin& begin);
+  /// `what`: it said. Throws `Error` if it is not what was said before.
+  void add(std::uint64_t digest, std::optional<std::string> checkpoint, const char* what);
+
+ private:
+  Tick next_ = 0;
+  std::vector<std::uint64_t> digests_;  // by call
+  Tick checkpoint_at_ = 0;              // the call after it
+  std::optional<std::string> checkpoint_;
+};
 
 /// Counts how often a program is started again, up to what the scenario allows.
 class OwnRestarts {

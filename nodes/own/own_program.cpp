@@ -59,7 +59,8 @@ std::string OwnProgram::last_words() const {
   return question + (line.empty() ? "" : ": " + line) + " (" + settings_.log_path + ")";
 }
 
-OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log)
+OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log,
+                       Frames more)
     : settings_(settings),
       endpoint_(std::in_place),
       socket_(make_socket(context_, zmq::socket_type::pair, max_data_bytes)) {
@@ -78,7 +79,7 @@ OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, 
   v1::OwnNodeRequest request;
   *request.mutable_begin() = std::move(begin);
   try {
-    if (!send(request, settings.start_within_s)) return;
+    if (!send(request, settings.start_within_s, more)) return;
     const auto got = answer(settings.start_within_s);
     if (got && !got->head.has_ready()) throw Error("its program does not say that it is ready");
   } catch (...) {
@@ -115,15 +116,16 @@ void OwnProgram::end(int signal) {
   pid_ = 0;
 }
 
-bool OwnProgram::try_to_send(const v1::OwnNodeRequest& request, std::string_view more) {
+bool OwnProgram::try_to_send(const v1::OwnNodeRequest& request, Frames more) {
   using zmq::send_flags;
-  const auto part = more.empty() ? send_flags::none : send_flags::sndmore;
-  if (!socket_.send(to_frame(request), part | send_flags::dontwait)) return false;
-  if (!more.empty()) socket_.send(zmq::buffer(more.data(), more.size()), send_flags::none);
+  const auto part = [&](std::size_t left) { return left ? send_flags::sndmore : send_flags::none; };
+  if (!socket_.send(to_frame(request), part(more.size()) | send_flags::dontwait)) return false;
+  for (std::size_t i = 0; i < more.size(); ++i)
+    socket_.send(zmq::buffer(more[i].data(), more[i].size()), part(more.size() - 1 - i));
   return true;
 }
 
-bool OwnProgram::send(const v1::OwnNodeRequest& request, double within_s, std::string_view more) {
+bool OwnProgram::send(const v1::OwnNodeRequest& request, double within_s, Frames more) {
   const Instant begun = now();
   while (!stopped()) {
     if (try_to_send(request, more)) return true;
@@ -194,21 +196,34 @@ std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
   return std::nullopt;
 }
 
+std::optional<OwnProgram::Answer> OwnProgram::heard(const char* what,
+                                                    v1::OwnNodeAnswer::BodyCase wanted,
+                                                    std::size_t frames) {
+  auto got = answer(working_within_s);
+  if (!got) return std::nullopt;
+  if (got->head.body_case() != wanted)
+    throw Error(std::string("its program answers a ") + what + " by something else");
+  if (got->frames.size() != frames)
+    throw Error("its program answers in " + std::to_string(got->frames.size()) +
+                " frames instead of " + std::to_string(frames));
+  return got;
+}
+
 bool OwnProgram::ask(const v1::OwnNodeStep& step, const EnvironmentState& environment) {
-  return send(request_of(step), settings_.silent_after_s, encode(environment).payload);
+  const std::string payload = encode(environment).payload;
+  const std::string_view more[]{payload};
+  return send(request_of(step), settings_.silent_after_s, more);
 }
 
 bool OwnProgram::ask_ahead(const v1::OwnNodeStep& step, const EnvironmentState& environment) {
-  return try_to_send(request_of(step), encode(environment).payload);
+  const std::string payload = encode(environment).payload;
+  const std::string_view more[]{payload};
+  return try_to_send(request_of(step), more);
 }
 
 std::optional<OwnProgram::Stepped> OwnProgram::stepped() {
-  auto got = answer(working_within_s);
+  auto got = heard("step", v1::OwnNodeAnswer::kStepped, 3);
   if (!got) return std::nullopt;
-  if (!got->head.has_stepped()) throw Error("its program answers a step by something else");
-  if (got->frames.size() != 3)
-    throw Error("its program answers in " + std::to_string(got->frames.size()) +
-                " frames instead of 3");
   const auto frames = views(got->frames);
   Stepped stepped;
   stepped.states = std::get<ObjectStates>(decode(MessageKind::object_states, frames[1], frames[2]));
@@ -222,14 +237,28 @@ std::optional<v1::OwnNodeFound> OwnProgram::find(const v1::OwnNodeFrame& frame,
                                                  std::string_view counts) {
   v1::OwnNodeRequest request;
   *request.mutable_frame() = frame;
-  if (!send(request, settings_.silent_after_s, counts)) return std::nullopt;
-  auto got = answer(working_within_s);
+  if (!send(request, settings_.silent_after_s, {&counts, 1})) return std::nullopt;
+  auto got = heard("frame", v1::OwnNodeAnswer::kFound, 1);
   if (!got) return std::nullopt;
-  if (!got->head.has_found()) throw Error("its program answers a frame by something else");
-  if (got->frames.size() != 1)
-    throw Error("its program answers in " + std::to_string(got->frames.size()) +
-                " frames instead of 1");
   return std::move(*got->head.mutable_found());
+}
+
+std::optional<OwnProgram::Tracked> OwnProgram::track(const v1::OwnNodeTrack& track,
+                                                     Frames exposures) {
+  v1::OwnNodeRequest request;
+  *request.mutable_track() = track;
+  if (!send(request, settings_.silent_after_s, exposures)) return std::nullopt;
+  auto got = heard("tick", v1::OwnNodeAnswer::kTracked, 2);
+  if (!got) return std::nullopt;
+  v1::OwnNodeTracked& head = *got->head.mutable_tracked();
+  const std::string_view set = views(got->frames)[1];
+  Tracked tracked;
+  tracked.tracks = std::get<TrackSet>(decode(MessageKind::track_set, set, {}));
+  if (head.has_checkpoint()) tracked.checkpoint = std::move(*head.mutable_checkpoint());
+  head.clear_checkpoint();
+  tracked.digest = content_digest(MessageKind::track_set, set, head.SerializeAsString());
+  if (head.has_points()) tracked.points = std::move(*head.mutable_points());
+  return tracked;
 }
 
 }  // namespace dmise

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/instant.h"
+#include "core/sim/message.h"
 #include "core/sim/state.h"
 #include "dmise/v1/own_node.pb.h"
 #include "nodes/own/private_endpoint.h"
@@ -39,8 +41,11 @@ struct ProgramSettings {
 /// program failed.
 class OwnProgram {
  public:
-  /// Starts the program, and tells it to begin.
-  OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log);
+  using Frames = std::span<const std::string_view>;
+
+  /// Starts the program, and tells it to begin; `more`: the frames after that.
+  OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log,
+             Frames more = {});
   /// Ends it.
   ~OwnProgram();
   OwnProgram(const OwnProgram&) = delete;
@@ -60,15 +65,28 @@ class OwnProgram {
   /// What it finds in a frame with these counts; nothing after the stop.
   std::optional<v1::OwnNodeFound> find(const v1::OwnNodeFrame& frame, std::string_view counts);
 
+  struct Tracked {
+    TrackSet tracks;
+    std::optional<v1::OwnNodePoints> points;
+    std::uint64_t digest = 0;  // of both as they came
+    std::optional<std::string> checkpoint;
+  };
+  /// What it makes of a tick's exposures; nothing after the stop.
+  std::optional<Tracked> track(const v1::OwnNodeTrack& track, Frames exposures);
+
  private:
   struct Answer {
     v1::OwnNodeAnswer head;
     std::vector<zmq::message_t> frames;
   };
   /// False while nobody is connected.
-  bool try_to_send(const v1::OwnNodeRequest& request, std::string_view more = {});
+  bool try_to_send(const v1::OwnNodeRequest& request, Frames more = {});
   /// Waits until the program is connected; false after the stop.
-  bool send(const v1::OwnNodeRequest& request, double within_s, std::string_view more = {});
+  bool send(const v1::OwnNodeRequest& request, double within_s, Frames more = {});
+  /// The next answer, which must be of this kind and have this many frames; nothing after the stop.
+  /// `what`: that it answers, for messages.
+  std::optional<Answer> heard(const char* what, v1::OwnNodeAnswer::BodyCase wanted,
+                              std::size_t frames);
   /// Waits for an answer; nothing after the stop.
   std::optional<Answer> answer(double within_s);
   void wait_until(short ready, std::chrono::milliseconds at_most);

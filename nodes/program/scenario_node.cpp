@@ -24,13 +24,16 @@ int run_scenario_node(const ScenarioNode& node, int argc, char** argv) {
          "--threads", threads,
          node.uses_threads ? "number of threads" : "accepted for compatibility; one thread is used")
       ->check(CLI::Range(1, 256));
+  bool allowed = false;
+  if (node.starts_programs)
+    app.add_flag("--allow-programs", allowed, "runs the program that the scenario names");
   return run_program(app, flags, argc, argv, [&] {
     const Scenario scenario = load_scenario(config);
     if (!kind.wanted(scenario))
       throw ConfigError(config + ": " + node.needs + ": is required for this node");
     if (flags.check && kind.writes_products) return 0;
     Threads pool(node.uses_threads ? threads : 1);
-    const auto participant = node.make({scenario, pool, out});
+    const auto participant = node.make({scenario, pool, out, allowed});
     if (flags.check) return 0;
     if (flags.master.empty()) throw ConfigError("--master: is required");
     return run_node(*participant, {.master = flags.master,

@@ -15,12 +15,14 @@ struct ScenarioNode {
     const Scenario& scenario;
     Threads& threads;
     std::string directory;  // of the run, if the node writes products
+    bool allow_programs;    // of the scenario
   };
 
   const char* name;             // its row in node_kinds(); the program is dmise-NAME
   const char* what;             // what it does, for --help
   const char* needs = nullptr;  // key that a scenario with such a node has
   bool uses_threads = false;
+  bool starts_programs = false;  // --allow-programs permits it
   /// Throws ConfigError for a scenario that the node cannot run. With --check it is called only if
   /// the node writes no products.
   std::function<std::unique_ptr<Participant>(const Inputs&)> make = {};

@@ -150,7 +150,7 @@ TEST_F(NodesOfObjects, ANodeMayDetectInTheFramesOfASensor) {
       load(object, "[{name: finder, run: [sh]}]", ", detection: {node: finder}");
   EXPECT_TRUE(scenario.sensors[0].detect);
   EXPECT_EQ(scenario.sensors[0].detector->node, "finder");
-  EXPECT_TRUE(scenario.own_nodes[0].detects);
+  EXPECT_EQ(scenario.own_nodes[0].role, OwnNodeRole::detector);
   EXPECT_NE(physics_json(scenario), physics_json(own));
   EXPECT_FALSE(load(object, "[]", ", detection: off").sensors[0].detect);
   // It runs in the sensor's process, and is no node of the run.
@@ -182,6 +182,54 @@ TEST_F(NodesOfObjects, ADetectorMustBeANodeThatDoesNothingElse) {
   EXPECT_THAT(complaint(fixed, "run: [sh]", "{}"), HasSubstr("sensors[0].detection"));
   EXPECT_THAT(complaint(fixed, "run: [sh]", "{nod: finder}"), HasSubstr("did you mean node?"));
   EXPECT_THAT(complaint(fixed, "run: [sh]", "perhaps"), HasSubstr("sensors[0].detection"));
+}
+
+class TrackingNode : public NodesOfObjects {
+ protected:
+  static Scenario track(const std::string& fusion, const std::string& node = "run: [sh]",
+                        const std::string& motion = "fixed: {gcrs_m: [7e6, 0, 0]}") {
+    return load("  - {name: a, motion: {" + motion + "}}\n",
+                "[{name: mine, " + node + "}]\nfusion: " + fusion);
+  }
+  static std::string complaint(const std::string& fusion, const std::string& node = "run: [sh]",
+                               const std::string& motion = "fixed: {gcrs_m: [7e6, 0, 0]}") {
+    return config_error_of([&] { track(fusion, node, motion); });
+  }
+};
+
+// It runs in the fusion node's process, and is no node of the run.
+TEST_F(TrackingNode, MakesTheTracksInTheProcessOfTheFusionNode) {
+  const Scenario scenario =
+      track("{node: mine, cue_delay_ticks: 3, detection_probability: 0.5, not_in_catalogue: [X]}");
+  EXPECT_EQ(scenario.fusion->node, "mine");
+  EXPECT_EQ(scenario.own_nodes[0].role, OwnNodeRole::tracker);
+  EXPECT_FALSE(kind_of_node("mine", scenario));
+  EXPECT_TRUE(starts_program(*kind_of_node(fusion_node, scenario), fusion_node, scenario));
+  const Scenario ours = load("  - {name: a, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n",
+                             "[]\nfusion: {cue_delay_ticks: 3}");
+  EXPECT_FALSE(starts_program(*kind_of_node(fusion_node, ours), fusion_node, ours));
+  EXPECT_NE(physics_json(scenario), physics_json(ours));
+}
+
+TEST_F(TrackingNode, DoesNothingElseAndTakesNoKeysOfOurFilters) {
+  EXPECT_THAT(complaint("{node: mime}"),
+              testing::AllOf(HasSubstr("fusion.node: no node of `nodes` has this name"),
+                             HasSubstr("did you mean mine?, got mime")));
+  EXPECT_THAT(complaint("{node: mine}", "run: [sh]", "node: mine"),
+              HasSubstr("nodes[0]: moves or turns objects and tracks: give each a node"));
+  EXPECT_THAT(complaint("{node: mine}", "elsewhere: on"),
+              HasSubstr("fusion.node: its node is elsewhere, but the fusion node starts its"));
+  EXPECT_THAT(
+      complaint("{node: mine}", "run: [sh], period_ticks: 2"),
+      HasSubstr("nodes[0].period_ticks: a tracker is asked at each tick: must be 1, got 2"));
+  EXPECT_THAT(complaint("on"), HasSubstr("it makes no tracks (fusion: {node: mine})"));
+  for (const char* key : {"gate_d2", "lost_after_s", "pointing_sigma_arcsec", "arc_exposures"})
+    EXPECT_THAT(complaint("{node: mine, " + std::string(key) + ": 20}"),
+                HasSubstr("fusion." + std::string(key) +
+                          ": is of the fusion node's own filters, and node mine makes the tracks, "
+                          "got 20"));
+  EXPECT_THAT(complaint("{node: mine, cue_delay_tick: 2}"),
+              HasSubstr("did you mean cue_delay_ticks"));
 }
 
 }  // namespace

@@ -170,6 +170,23 @@ TEST(FusionEvaluator, DoesNotGoOnWithoutItsInputs) {
   EXPECT_EQ(FusionJournal::ticks_written(path), 3);
 }
 
+// What a program that was started again hears: the ticks that it has not, as they were.
+TEST(FusionEvaluator, ItsJournalRepeatsSomeTicks) {
+  TwoSites run;
+  FusionEvaluator node(run.scenario, make_clock(run.scenario), run.directory / "out");
+  steps(node, run, 0, 5);
+  const FusionJournal journal(fusion_journal_path(run.directory / "out"));
+  std::vector<Tick> heard;
+  journal.replay(2, 5, [&](Tick tick, std::span<const Message> inputs) {
+    heard.push_back(tick);
+    const auto expected = run.inputs(tick);
+    ASSERT_EQ(inputs.size(), expected.size());
+    for (std::size_t i = 0; i < inputs.size(); ++i) EXPECT_EQ(*inputs[i].state, *expected[i].state);
+  });
+  EXPECT_EQ(heard, (std::vector<Tick>{2, 3, 4}));
+  EXPECT_THROW(journal.replay(2, 9, [](Tick, std::span<const Message>) {}), Error);
+}
+
 TEST(FusionEvaluator, KnowsNoObjectThatIsInNoCatalogue) {
   TwoSites run("{not_in_catalogue: [OBJECT 5, \"7\"]}");
   FusionEvaluator node(run.scenario, make_clock(run.scenario), run.directory / "out");

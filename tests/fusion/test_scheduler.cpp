@@ -249,6 +249,81 @@ TEST(Scheduler, KnowsTheLimitsOfTheAxes) {
   EXPECT_TRUE(!to_the_end || to_the_end->exposures < 8u);
 }
 
+std::vector<Task> wished(Scheduler& scheduler, std::span<const CueTarget> targets,
+                         std::vector<CueWish>& wishes, double now_s = 60) {
+  return scheduler.step(sim_seconds(now_s), sim_seconds(now_s + 2 * tick_s),
+                        sim_seconds(now_s + 3 * tick_s), targets, &wishes);
+}
+
+// The wished task is the one that the same sensor is given if it has no other choice.
+TEST(Scheduler, GivesWhatIsWishedWhateverElseWouldTellMore) {
+  const CueTarget targets[] = {target(3, 180, 60, 30), target(5, 185, 60, 1000)};
+  Scheduler scheduler = scheduler_of({telescope("a"), telescope("b")});
+  std::vector<CueWish> wishes{{.sensor = "b", .track = 3}};
+  const auto tasks = wished(scheduler, targets, wishes);
+  ASSERT_EQ(tasks.size(), 1u);
+  EXPECT_EQ(wishes[0].obstacle, "");
+  Scheduler alone = scheduler_of({telescope("b")});
+  const auto expected = tasks_of(alone, std::span(targets).first(1));
+  ASSERT_EQ(expected.size(), 1u);
+  EXPECT_EQ(tasks[0].sensor, "b");
+  EXPECT_EQ(tasks[0].track, 3u);
+  EXPECT_EQ(tasks[0].first_frame, expected[0].first_frame);
+  EXPECT_EQ(tasks[0].path_m, expected[0].path_m);
+  EXPECT_EQ(tasks[0].gain_nats, expected[0].gain_nats);
+}
+
+TEST(Scheduler, AWishMaySayHowManyExposuresAndNeedsNoGain) {
+  CuedSensor sensor = telescope();
+  sensor.cue.least_gain_nats = 1e3;
+  const CueTarget targets[] = {target(1, 90, 50)};
+  Scheduler scheduler = scheduler_of({sensor});
+  EXPECT_TRUE(tasks_of(scheduler, targets).empty());
+  std::vector<CueWish> wishes{{.sensor = "telescope", .track = 1, .exposures = 5}};
+  const auto tasks = wished(scheduler, targets, wishes);
+  ASSERT_EQ(tasks.size(), 1u);
+  EXPECT_EQ(tasks[0].exposures, 5u);
+}
+
+TEST(Scheduler, NothingIsWishedOfASensorThatIsNotNamed) {
+  const CueTarget targets[] = {target(1, 90, 50)};
+  Scheduler scheduler = scheduler_of({telescope()});
+  std::vector<CueWish> none;
+  EXPECT_TRUE(wished(scheduler, targets, none).empty());
+  EXPECT_EQ(tasks_of(scheduler, targets).size(), 1u);
+}
+
+TEST(Scheduler, AWishThatCannotBeSaysWhy) {
+  const auto obstacle = [](const CuedSensor& sensor, const CueTarget& t, double now_s = 60) {
+    Scheduler scheduler = scheduler_of({sensor});
+    std::vector<CueWish> wishes{{.sensor = "telescope", .track = 1}};
+    EXPECT_TRUE(wished(scheduler, {&t, 1}, wishes, now_s).empty());
+    return wishes[0].obstacle;
+  };
+  CuedSensor high = telescope(), low = telescope(), sunless = telescope(), moonless = telescope(),
+             slow = telescope();
+  high.cue.least_elevation_deg = 65;
+  low.cue.greatest_elevation_deg = 30;
+  sunless.cue.sun_exclusion_deg = moonless.cue.moon_exclusion_deg = 180;
+  slow.cue.slew_deg_per_s = 0.1;
+  const CueTarget east = target(1, 90, 50);
+  EXPECT_EQ(obstacle(high, east), "it is below the least elevation");
+  EXPECT_EQ(obstacle(telescope(), target(1, 90, -30)), "it is below the least elevation");
+  EXPECT_EQ(obstacle(low, east), "it is above the greatest elevation");
+  EXPECT_EQ(obstacle(sunless, east), "it is too near the Sun");
+  EXPECT_EQ(obstacle(moonless, east), "it is too near the Moon");
+  EXPECT_EQ(obstacle(slow, east), "it is faster than the mount");
+  EXPECT_EQ(obstacle(telescope(), target(2, 90, 50)), "its path can't be predicted");
+  EXPECT_EQ(obstacle(telescope(), east, 580), "the run ends before");
+  EXPECT_EQ(obstacle(telescope(), east, 600), "the run ends before");
+
+  Scheduler scheduler = scheduler_of({telescope()});
+  std::vector<CueWish> wishes{{.sensor = "telescope", .track = 1}};
+  EXPECT_EQ(wished(scheduler, {&east, 1}, wishes).size(), 1u);
+  EXPECT_TRUE(wished(scheduler, {&east, 1}, wishes, 65).empty());
+  EXPECT_EQ(wishes[0].obstacle, "it is busy");
+}
+
 // A prediction that is wider than the field tells less than its information would.
 TEST(Scheduler, WhatMayLieOutsideTheFieldCountsForLess) {
   CuedSensor narrow = telescope();

@@ -170,4 +170,5 @@ def test(binary, work):
     interrupted(binary, paced, work / "run-launch", reference, "run", "launch")
 
 
-main(test)
+if __name__ == "__main__":
+    main(test)

@@ -15,7 +15,7 @@ from astropy.time import Time
 from astropy.utils import iers
 from sgp4.api import Satrec
 
-from harness import check, main
+from harness import check, main, truth_at
 
 SCENARIO = """\
 simulation: {start: 2018-01-21T00:15:00Z, duration_s: 100, tick_s: 5, seed: 1}
@@ -44,14 +44,6 @@ def lines_of(file):
 
 def with_checksum(line):
     return line + str(sum(int(c) if c.isdigit() else c == "-" for c in line) % 10)
-
-
-def truth_at(time_ns, truth):
-    """From the nearest exposure, in the field of a point mass: to 1 m in 5 s."""
-    near = min(truth, key=lambda t: abs(t["middle_ns"] - time_ns))
-    place, velocity = near["true_position_gcrs_m"], near["true_velocity_gcrs_m_per_s"]
-    s, r = 1e-9 * (time_ns - near["middle_ns"]), math.hypot(*place)
-    return [x + v * s - 0.5 * 3.986004418e14 * x / r**3 * s * s for x, v in zip(place, velocity)]
 
 
 def judge_elements(file, track):

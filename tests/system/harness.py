@@ -1,6 +1,7 @@
 """What the system tests share: scenarios of small cameras, a launched run, its processes."""
 
 import json
+import math
 import os
 import pathlib
 import signal
@@ -158,6 +159,14 @@ def check_same(out, reference, claim):
     ours, theirs = products(out), products(reference)
     differ = sorted(p for p in ours.keys() | theirs.keys() if ours.get(p) != theirs.get(p))
     check(not differ and theirs, f"{claim}: {len(theirs)} files, {len(differ)} differ {differ[:3]}")
+
+
+def truth_at(time_ns, truth):
+    """Where the one object of lines of truth.jsonl is: from the nearest exposure, in the field of a point mass: to 1 m in 5 s."""
+    near = min(truth, key=lambda t: abs(t["middle_ns"] - time_ns))
+    place, velocity = near["true_position_gcrs_m"], near["true_velocity_gcrs_m_per_s"]
+    s, r = 1e-9 * (time_ns - near["middle_ns"]), math.hypot(*place)
+    return [x + v * s - 0.5 * 3.986004418e14 * x / r**3 * s * s for x, v in zip(place, velocity)]
 
 
 def first_frame(out, sensor="*"):

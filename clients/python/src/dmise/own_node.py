@@ -1,4 +1,5 @@
-"""Models of one's own in a run: `actor` marks what moves objects, `serve` runs it or a detector (docs/howto/plug-in-a-model.md).
+"""Models of one's own in a run: `actor` marks what moves objects, `serve` runs it, a detector or a tracker
+(docs/howto/plug-in-a-model.md).
 
     @dmise.actor("inspector")
     def orbit(t_s, world, options):
@@ -22,10 +23,11 @@ from typing import Any
 
 import zmq
 
-from . import own_detector, protocol
+from . import own_detector, own_tracker, protocol
 from .convert import record_of, start_of
 from .own_detector import Detector, Served
 from .own_states import StatesWriter
+from .own_tracker import Known, Tracker
 from .world import EnvironmentState
 
 ADDRESS_VARIABLE = "DMISE_OWN_NODE"
@@ -43,6 +45,7 @@ class World:
     node: str = ""
     objects: list[str] = field(default_factory=list)  # those that it moves or turns, in the order of arrays
     seed: int = 0  # of the scenario
+    known: Known = field(default_factory=Known)  # to a tracker
 
     @functools.cached_property
     def environment(self) -> EnvironmentState:
@@ -71,10 +74,11 @@ def actor(*names: str) -> Callable[[Callable[..., Any]], Actor]:
     return lambda model: Actor(model, names)
 
 
-def serve(model: Actor | Detector) -> None:
+def serve(model: Actor | Detector | Tracker) -> None:
     """Says what `model` says, tick by tick or frame by frame, to the run that has started this program, until the run ends."""
     if not isinstance(model, Served):
-        raise TypeError(f"serve: takes what @dmise.actor(..) or @dmise.detector marks, got {type(model).__name__}")
+        raise TypeError(f"serve: takes what @dmise.actor(..), @dmise.detector or @dmise.tracker marks, got "
+                        f"{type(model).__name__}")
     address = os.environ.get(ADDRESS_VARIABLE)
     if not address:
         sys.exit(f"{ADDRESS_VARIABLE} is not set: this program is started by a scenario with "
@@ -90,7 +94,7 @@ class _Failed(Exception):
 
 
 class _Conversation:
-    def __init__(self, address: str, served: Actor | Detector) -> None:
+    def __init__(self, address: str, served: Actor | Detector | Tracker) -> None:
         self._served = served
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.PAIR)
@@ -128,9 +132,11 @@ class _Conversation:
     def _answer(self, request: Any, more: list[bytes]) -> None:
         try:
             if request.HasField("begin"):
-                frames = self._begin(request.begin)
+                frames = self._begin(request.begin, more)
             elif request.HasField("frame"):
                 frames = self._search(request.frame, more[0])
+            elif request.HasField("track"):
+                frames = self._track(request.track, more)
             else:
                 frames = self._step(request.step, more[0])
         except Exception as error:
@@ -154,7 +160,7 @@ class _Conversation:
                 if self._working:
                     self._socket.send(alive)
 
-    def _begin(self, begin: Any) -> list[bytes]:
+    def _begin(self, begin: Any, more: list[bytes]) -> list[bytes]:
         if begin.schema_version != protocol.SCHEMA_VERSION:
             raise ValueError(f"the run has schema version {begin.schema_version}, this package {protocol.SCHEMA_VERSION}")
         threading.Thread(target=self._show_life, args=(begin.alive_every_s,), daemon=True).start()
@@ -163,23 +169,23 @@ class _Conversation:
         self._objects = [each.name for each in begin.objects]
         self._states = StatesWriter(begin.objects)
         self._options = json.loads(begin.options_json)
-        self._require_task()
+        self._known = own_tracker.known_of(begin.tracking, more, self._start) if begin.HasField("tracking") else Known()
+        self._require_role()
         self._model = self._served.make()
         if begin.HasField("checkpoint"):
             self._model.restore(begin.checkpoint)
         return [protocol.OwnNodeAnswer(ready=protocol.OwnNodeReady()).SerializeToString()]
 
-    def _require_task(self) -> None:
+    def _require_role(self) -> None:
         """What the program does is what the scenario has it do."""
-        served = self._served
-        if isinstance(served, Detector):
-            if not self._begun.HasField("sensor"):
-                raise ValueError(f"the program detects, the scenario has it move {', '.join(self._objects)}")
-        elif self._begun.HasField("sensor"):
-            raise ValueError(f"the program moves objects, the scenario has it detect in the frames of {self._begun.sensor}")
-        elif served.names and sorted(served.names) != sorted(self._objects):
-            raise ValueError(f"the program moves {', '.join(served.names)}, the scenario has it move "
-                             f"{', '.join(self._objects)}")
+        served, begun = self._served, self._begun
+        does = "detects" if isinstance(served, Detector) else "tracks" if isinstance(served, Tracker) else "moves objects"
+        wanted = f"detect in the frames of {begun.sensor}" if begun.HasField("sensor") else \
+            "track" if begun.HasField("tracking") else f"move {', '.join(self._objects)}"
+        if does.split()[0].rstrip("s") != wanted.split()[0]:
+            raise ValueError(f"the program {does}, the scenario has it {wanted}")
+        if isinstance(served, Actor) and served.names and sorted(served.names) != sorted(self._objects):
+            raise ValueError(f"the program moves {', '.join(served.names)}, the scenario has it {wanted}")
 
     def _search(self, frame: Any, counts: bytes) -> list[bytes]:
         said = self._said_by(own_detector.frame_of(frame, counts, self._begun.node), self._options)
@@ -189,13 +195,26 @@ class _Conversation:
         said = self._model(*arguments)
         return asyncio.run(_result_of(said)) if inspect.isawaitable(said) else said
 
+    def _world(self, at: Any, environment: bytes) -> World:
+        return World(at.tick, at.time_ns, environment, self._start, self._begun.node, self._objects, self._begun.seed,
+                     self._known)
+
+    def _checkpoint(self, asked: Any, answer: Any) -> None:
+        if asked.give_checkpoint and hasattr(self._model, "checkpoint"):
+            answer.checkpoint = self._model.checkpoint()
+
     def _step(self, step: Any, environment: bytes) -> list[bytes]:
-        world = World(step.tick, step.time_ns, environment, self._start, self._begun.node, self._objects, self._begun.seed)
-        said = self._said_by(step.time_ns / 1e9, world, self._options)
+        said = self._said_by(step.time_ns / 1e9, self._world(step, environment), self._options)
         stepped = protocol.OwnNodeStepped()
-        if step.give_checkpoint and hasattr(self._model, "checkpoint"):
-            stepped.checkpoint = self._model.checkpoint()
+        self._checkpoint(step, stepped)
         return [protocol.OwnNodeAnswer(stepped=stepped).SerializeToString(), *self._states.frames(said, step.tick, step.time_ns)]
+
+    def _track(self, track: Any, more: list[bytes]) -> list[bytes]:
+        frames = own_tracker.frames_of(more[1:], self._start)
+        said = self._said_by(track.time_ns / 1e9, frames, self._world(track, more[0]), self._options)
+        tracked, tracks = own_tracker.packed(said, track.tick, track.time_ns)
+        self._checkpoint(track, tracked)
+        return [protocol.OwnNodeAnswer(tracked=tracked).SerializeToString(), tracks.SerializeToString()]
 
 
 async def _result_of(said: Any) -> Any:
