@@ -58,7 +58,8 @@ v1::OwnNodeStep step_of(Tick tick, bool give_checkpoint = false) {
 }
 
 OwnProgram::Stepped asked(OwnProgram& program, Tick tick, bool give_checkpoint = false) {
-  return *program.step(step_of(tick, give_checkpoint), environment_of(tick));
+  program.ask(step_of(tick, give_checkpoint), environment_of(tick));
+  return *program.stepped();
 }
 
 std::string error_of(const std::function<void()>& does) {
