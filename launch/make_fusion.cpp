@@ -7,8 +7,9 @@
 namespace dmise {
 
 std::unique_ptr<Participant> make_fusion(const Scenario& scenario, const Clock& clock,
-                                         const std::string& directory, OwnNodeSettings settings) {
-  return std::make_unique<FusionEvaluator>(scenario, clock, directory, std::move(settings));
+                                         const std::string& directory,
+                                         const OwnNodeSettings& settings) {
+  return std::make_unique<FusionEvaluator>(scenario, clock, directory, settings);
 }
 
 }  // namespace dmise

@@ -11,6 +11,7 @@ namespace dmise {
 
 /// Returns the participant that tracks objects. A program without it throws `Error`.
 std::unique_ptr<Participant> make_fusion(const Scenario& scenario, const Clock& clock,
-                                         const std::string& directory, OwnNodeSettings settings);
+                                         const std::string& directory,
+                                         const OwnNodeSettings& settings);
 
 }  // namespace dmise

@@ -15,7 +15,7 @@ void add_commands(CLI::App& app) {
 }
 
 std::unique_ptr<Participant> make_fusion(const Scenario&, const Clock&, const std::string&,
-                                         OwnNodeSettings) {
+                                         const OwnNodeSettings&) {
   throw Error("this part of the program has no fusion: ./dmise build makes the whole");
 }
 
