@@ -44,6 +44,11 @@ struct ActorTask {
   SimTime tick;                      // length of one
   Tick last_tick = 0;                // of the run
   Tick period_ticks = 1;             // between two steps
+
+  /// An option that is a number, or three. Throw `Error` "option KEY: reason" if it is not there or
+  /// something else.
+  double number(const std::string& option) const;
+  Vec<Gcrs> vector(const std::string& option) const;
 };
 
 /// What an actor is told with a tick.

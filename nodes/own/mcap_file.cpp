@@ -49,6 +49,9 @@ std::string unpacked(std::string_view compression, std::string_view packed, std:
   if (size > longest_chunk_bytes) throw Error("a chunk of " + std::to_string(size) + " bytes");
   if (compression.empty()) return std::string(packed);
   if (compression != "zstd") throw Error("is compressed by " + printable(compression, 20));
+  const unsigned long long stated = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (stated != size && stated != ZSTD_CONTENTSIZE_UNKNOWN)
+    throw Error("a chunk of another size than it says");
   std::string plain(size, '\0');
   const std::size_t got = ZSTD_decompress(plain.data(), size, packed.data(), packed.size());
   if (ZSTD_isError(got)) throw Error(ZSTD_getErrorName(got));
@@ -60,15 +63,16 @@ class McapReader {
  public:
   explicit McapReader(const std::function<bool(const McapMessage&)>& hear) : hear_(hear) {}
 
-  /// False once it has heard enough. The last record may be cut where `may_be_cut`.
-  bool read(std::string_view records, bool may_be_cut) {
+  /// False once it has heard enough. In a chunk no record may be cut, or be a chunk.
+  bool read(std::string_view records, bool in_chunk) {
     constexpr std::size_t head_bytes = 9;
     while (!records.empty() && records != magic) {
       Fields head(records);
-      if (may_be_cut && records.size() < head_bytes) return true;
+      if (!in_chunk && records.size() < head_bytes) return true;
       const auto opcode = head.number<std::uint8_t>();
       const auto size = head.number<std::uint64_t>();
-      if (may_be_cut && size > head.rest().size()) return true;
+      if (!in_chunk && size > head.rest().size()) return true;
+      if (in_chunk && opcode == chunk) throw Error("a chunk in a chunk");
       if (!take(opcode, Fields(head.bytes(size)))) return false;
       records = head.rest();
     }
@@ -119,7 +123,7 @@ class McapReader {
     const auto* bytes = reinterpret_cast<const Bytef*>(plain.data());
     if (plain.size() != size || (sum != 0 && crc32_z(0, bytes, plain.size()) != sum))
       throw Error("a chunk has another checksum");
-    return read(plain, false);
+    return read(plain, true);
   }
 
   const std::function<bool(const McapMessage&)>& hear_;
@@ -135,7 +139,7 @@ void read_mcap(const std::string& path, const std::function<bool(const McapMessa
     const std::string_view bytes(reinterpret_cast<const char*>(file.bytes().data()),
                                  file.bytes().size());
     if (!bytes.starts_with(magic)) throw ConfigError(printable(path) + ": not an MCAP file");
-    McapReader(hear).read(bytes.substr(magic.size()), true);
+    McapReader(hear).read(bytes.substr(magic.size()), false);
   } catch (const ConfigError&) {
     throw;
   } catch (const Error& error) {

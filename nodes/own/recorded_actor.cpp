@@ -3,7 +3,6 @@
 #include <google/protobuf/io/coded_stream.h>
 
 #include <cstdint>
-#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -21,6 +20,7 @@ constexpr int arrays_field = 2, states_field = int(MessageKind::object_states);
 
 /// The states of a RecordedMessage; null if it has none, as a probe.
 std::shared_ptr<const State> states_in(std::string_view record) {
+  if (record.size() > max_array_bytes + max_payload_bytes) throw Error("not a RecordedMessage");
   google::protobuf::io::CodedInputStream input(reinterpret_cast<const std::uint8_t*>(record.data()),
                                                int(record.size()));
   std::string payload, arrays, other;
@@ -59,12 +59,7 @@ RecordedActor::RecordedActor(const Scenario& scenario, std::string node, const s
       is_of_run = true;
     }
     if (message.channel != topic_) return true;
-    const auto state = states_in(message.data);
-    if (!state) return true;
-    const Tick tick = std::get<ObjectStates>(*state).tick;
-    if (tick > Tick(states_.size()))
-      throw ConfigError("lacks tick " + std::to_string(states_.size()) + " of node " + node_);
-    if (tick == Tick(states_.size())) states_.push_back(state);  // or said again
+    add(message.data, scenario);
     return states_.size() < ticks;
   };
   try {
@@ -78,6 +73,19 @@ RecordedActor::RecordedActor(const Scenario& scenario, std::string node, const s
     const std::string what = error.what();
     throw ConfigError(what.starts_with(path) ? what : path + ": " + what);
   }
+}
+
+void RecordedActor::add(std::string_view record, const Scenario& scenario) {
+  const auto state = states_in(record);
+  if (!state) return;
+  const auto& states = std::get<ObjectStates>(*state);
+  const Tick due = Tick(states_.size());
+  if (states.tick > due)
+    throw ConfigError("lacks tick " + std::to_string(due) + " of node " + node_);
+  if (states.tick < due) return;  // said again
+  if (states.time != scenario.time_of(due))
+    throw ConfigError("tick " + std::to_string(due) + " of node " + node_ + " is not at its time");
+  states_.push_back(state);
 }
 
 std::vector<Message> RecordedActor::step(Tick tick, std::span<const Message>) {

@@ -2,6 +2,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config/scenario.h"
@@ -23,6 +24,9 @@ class RecordedActor : public Actor {
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
 
  private:
+  /// Adds the states of a recorded message that are due.
+  void add(std::string_view record, const Scenario& scenario);
+
   std::string node_, topic_;
   std::vector<std::shared_ptr<const State>> states_;  // by tick
 };

@@ -9,6 +9,7 @@
 #include <functional>
 #include <zmq.hpp>
 
+#include "clients/cpp/node.h"
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/orbit/motion.h"
@@ -216,6 +217,20 @@ TEST_F(CppNode, RefusesWhatIsNoStep) {
   frame.mutable_frame();
   EXPECT_EQ(refusal_of({{begun}, {frame.SerializeAsString(), ""}}),
             "the run asks for what is no state of objects");
+}
+
+TEST(ActorTask, SaysWhichOptionIsWrong) {
+  const ActorTask task{
+      .options = {{"r_m", 7e6}, {"name", "a"}, {"xyz", {1, 2.5, -3}}, {"two", {1, 2}}}};
+  EXPECT_EQ(task.number("r_m"), 7e6);
+  EXPECT_EQ(task.vector("xyz"), (Vec<Gcrs>{1, 2.5, -3}));
+  const auto number = [&](const char* option) { return error_of([&] { task.number(option); }); };
+  const auto vector = [&](const char* option) { return error_of([&] { task.vector(option); }); };
+  EXPECT_EQ(number("v"), "option v: is missing");
+  EXPECT_EQ(number("name"), "option name: must be a number, got \"a\"");
+  EXPECT_EQ(vector("v"), "option v: is missing");
+  EXPECT_EQ(vector("r_m"), "option r_m: must be a list of 3 numbers, got 7000000.0");
+  EXPECT_EQ(vector("two"), "option two: must be a list of 3 numbers, got [1,2]");
 }
 
 TEST_F(CppNode, SaysWhoStartsIt) {

@@ -19,9 +19,11 @@ using testing::HasSubstr;
 
 /// Runs a shell's commands to their end; the shell looks at what it was given.
 class SpawnTest : public testing::Test {
+ public:
+  ~SpawnTest() override { std::filesystem::remove_all(directory_); }
+
  protected:
   SpawnTest() { std::filesystem::create_directories(directory_); }
-  ~SpawnTest() override { std::filesystem::remove_all(directory_); }
 
   int exit_code_of(const std::string& commands, bool keep_log = false) {
     const pid_t pid = spawn({.name = "shell",

@@ -98,7 +98,8 @@ def touched(names, commands, includes):
     """The named files, and for each header among them one that includes it, in their order."""
     files = {name: None for name in names if name in commands}
     for header in (name for name in names if name.endswith(".h")):
-        readers = sorted(path for path in commands if header in includes.of(path))
+        readers = (sorted(path for path in commands if header in includes.of(path))
+                   or sorted(path for path in commands if header in includes.all_of(path)))
         own = header[:-2] + ".cpp"
         if own not in files and not files.keys() & set(readers):
             files.update(dict.fromkeys([own] if own in readers else readers[:1]))
@@ -143,7 +144,12 @@ def main():
 
     changed = [path for path in commands if clean.get(path) != digests[path]]
     if arguments and not arguments[0].startswith("--"):
-        wanted = [os.path.relpath(Path(name).resolve(), ROOT) for name in arguments]
+        named = [os.path.relpath(Path(name).resolve(), ROOT) for name in arguments]
+        for name in named:
+            if not touched([name], commands, includes):
+                print(f"tidy: {name}: no source that is compiled here, nor a header of one; {usage}", file=sys.stderr)
+                return 2
+        wanted = touched(named, commands, includes)
     else:
         every = arguments[:1] == ["--all"]
         commit = None if every else git("rev-parse", arguments[1]) if arguments else commit_before()

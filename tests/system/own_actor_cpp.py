@@ -48,7 +48,7 @@ def test(binary, directory):
         check_like(directory / command, directory / "file", f"{command}: a node in C++ that moves by two_body is two_body")
     wrong = write(directory, "wrong.yaml", node="run: [./my_actor]")
     said = dmise(binary, "run", wrong, "--allow-programs", "--out", directory / "wrong", code=1)
-    check("gnc: tick 0: " in said and "position_m" in said, said.strip().splitlines()[-1])
+    check("gnc: tick 0: option position_m: is missing" in said, said.strip().splitlines()[-1])
 
 
 if __name__ == "__main__":

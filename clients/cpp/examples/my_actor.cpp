@@ -8,16 +8,11 @@
 
 namespace {
 
-dmise::Vec<dmise::Gcrs> vector_of(const nlohmann::json& xyz) {
-  return {xyz.at(0), xyz.at(1), xyz.at(2)};
-}
-
 class MyActor {
  public:
   explicit MyActor(const dmise::ActorTask& task) : clock_(dmise::parse_utc(task.start_utc)) {
     motion_ = {.epoch = clock_.tai({0}),
-               .state = {vector_of(task.options.at("position_m")),
-                         vector_of(task.options.at("velocity_m_per_s"))}};
+               .state = {task.vector("position_m"), task.vector("velocity_m_per_s")}};
   }
 
   dmise::ObjectState step(const dmise::ActorWorld& world) const {
