@@ -56,11 +56,12 @@ double speckles_in_noise(int level, const PlanFacts& f, double source_e, double 
   return std::min(f.in_noise(light_e), half_noise * left);
 }
 
-/// Error on uncut patches of 32 px [e-]: relative 0.7 times the size of a patch in radians for
-/// the zodiacal table, which bends at its nodes, and 1.5 times its square for the other parts.
-/// These steepen towards the horizon as the airmass and twilight towards the Sun: there the error
-/// is of the third power of a patch over the way to them. Moonlight has a kink 9 deg from the Moon
-/// and rises towards it; clouds have edges.
+/// Error on uncut patches of 32 px [e-]: relative, by the square of the size of a patch in radians,
+/// 8 times that for the zodiacal light, whose table is a cubic between its nodes, and as much as
+/// the square of a patch over the way to the Sun; 1.5 times for the other parts. These steepen
+/// towards the horizon as the airmass and twilight towards the Sun: there the error is of the third
+/// power of a patch over the way to them. Moonlight has a kink 9 deg from the Moon and rises
+/// towards it; clouds have edges.
 double of_patches(const SkySample& s, const PlanFacts& f) {
   // The Earth's edge, and the air over it, are narrower than patches.
   const bool sees_edge = f.sees_horizon && !f.scene.on_ground;
@@ -71,9 +72,11 @@ double of_patches(const SkySample& s, const PlanFacts& f) {
   const auto steep = [&](double way_rad) {
     return std::min(1.0, third_order * std::pow(patch_rad / way_rad, 3));
   };
-  double missed_e = 0.7 * patch_rad * zodiacal_e +
+  const double sun_rad = std::max(nearest_sun_rad, f.nearest_sun_rad),
+               over_sun = patch_rad / sun_rad;
+  double missed_e = std::min(1.0, 8.0 * patch_rad * patch_rad + over_sun * over_sun) * zodiacal_e +
                     1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e) +
-                    steep(std::max(nearest_sun_rad, f.nearest_sun_rad)) * s.of(SkyPart::twilight);
+                    steep(sun_rad) * s.of(SkyPart::twilight);
   // Twilight falls by 1 / (360 k) mag a degree from the zenith, where it has the tip of a cone.
   constexpr double tip = 0.3, mag_per_rad = 0.16;
   if (f.sees_zenith)
