@@ -43,6 +43,7 @@ class Target:
         of ZeroMQ."""
         socket = self.context.socket(kind)
         socket.linger = 0
+        socket.sndtimeo = int(1000 * PATIENCE_S)  # to a run that has ended
         for name, value in options.items():
             setattr(socket, name, value)
         if self.keys:
