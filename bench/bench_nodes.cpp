@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -20,6 +19,7 @@
 #include "bench/figure.h"
 #include "core/base/error.h"
 #include "core/base/instant.h"
+#include "core/base/quantile.h"
 #include "core/base/sim_time.h"
 #include "core/base/text_file.h"
 #include "core/sim/message.h"
@@ -209,14 +209,6 @@ double measure(const NodesCase& nodes, const std::string& command, const std::st
   return ticks_per_s(nodes, directory);
 }
 
-template <class Measure>
-double median_of(Measure&& measure_once) {
-  std::vector<double> values;
-  for (int i = 0; i < repeats; ++i) values.push_back(measure_once());
-  std::ranges::sort(values);
-  return values[repeats / 2];
-}
-
 }  // namespace
 
 int bench_nodes(bool json) {
@@ -227,10 +219,13 @@ int bench_nodes(bool json) {
   const auto rate = [&](const NodesCase& nodes, const std::string& command) {
     return measure(nodes, command, python, directory);
   };
-  const double one = median_of([&] { return rate({.ticks = 3000}, "run"); });
-  print_figure({"python_actor_ticks_per_s", one, "ticks/s", "", 0, 300}, json);
-  const double many = median_of([&] { return rate({.objects = 20'000, .ticks = 100}, "run"); });
-  print_figure({"python_actor_20000_ticks_per_s", many, "ticks/s", "", 0, 15}, json);
+  std::vector<double> one, many;
+  for (int i = 0; i < repeats; ++i) {
+    one.push_back(rate({.ticks = 3000}, "run"));
+    many.push_back(rate({.objects = 20'000, .ticks = 100}, "run"));
+  }
+  print_figure({"python_actor_ticks_per_s", median_of(one), "ticks/s", "", 0, 300}, json);
+  print_figure({"python_actor_20000_ticks_per_s", median_of(many), "ticks/s", "", 0, 15}, json);
   const NodesCase sixteen{.nodes = 16, .ticks = 2000},
       still{.nodes = 16, .ticks = 2000, .python = false};
   std::vector<double> pythons, stills, ratios;
@@ -239,11 +234,10 @@ int bench_nodes(bool json) {
     stills.push_back(rate(still, "launch"));
     ratios.push_back(pythons.back() / stills.back());
   }
-  for (auto* values : {&pythons, &stills, &ratios}) std::ranges::sort(*values);
   const std::string anchor = "16 nodes that do nothing";
-  print_figure(
-      {"nodes_16_ticks_per_s", pythons[repeats / 2], "ticks/s", anchor, stills[repeats / 2]}, json);
-  print_figure({"nodes_16_ratio", ratios[repeats / 2], "1", anchor, 1.0, 0.5}, json);
+  print_figure({"nodes_16_ticks_per_s", median_of(pythons), "ticks/s", anchor, median_of(stills)},
+               json);
+  print_figure({"nodes_16_ratio", median_of(ratios), "1", anchor, 1.0, 0.5}, json);
   fs::remove_all(directory);
   return 0;
 }

@@ -31,6 +31,8 @@ void check(const v1::OwnNodeBegin& begin, const ActorTask& task) {
   if (begin.has_sensor())
     throw Error("the program moves objects, the scenario has it detect in the frames of " +
                 begin.sensor());
+  if (begin.has_tracking())
+    throw Error("the program moves objects, the scenario has it make the tracks");
   if (!task.options.is_object()) throw Error("begin: options_json: must be one JSON object");
   if (task.tick.ns <= 0) throw Error("begin: tick_ns: must be > 0");
   if (task.last_tick < 0) throw Error("begin: last_tick: must be >= 0");

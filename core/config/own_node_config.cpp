@@ -209,6 +209,7 @@ OwnNode read_own_node(const YamlValue& value) {
   node.period_ticks = map.integer_or("period_ticks", 1);
   if (const auto options = map.find("options")) node.options_json = read_options(*options);
   if (fmu) node.options_json = fmu_json(map, node.options_json);
+  node.is_fmu = bool(fmu);
   map.done();
   if (int(bool(run)) + int(bool(fmu)) + int(elsewhere) != 1)
     value.fail("give either run or fmu or elsewhere: on", false);

@@ -23,6 +23,7 @@ struct OwnNode {
   std::string directory;         // in which it runs: that of the scenario
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
+  bool is_fmu = false;  // which moves or turns one object
   OwnNodeRole role = OwnNodeRole::none;
 };
 

@@ -240,6 +240,8 @@ OwnNode& give_role(Scenario& scenario, const std::string& name, const std::strin
 void give_inner_role(Scenario& scenario, const std::string& name, const std::string& where,
                      OwnNodeRole role, const std::string& who, const std::string& asked) {
   const OwnNode& node = give_role(scenario, name, where, role);
+  if (node.is_fmu)
+    throw ConfigError(where + ": an FMU moves or turns an object, and " + name + " is one");
   if (node.run.empty())
     throw ConfigError(where + ": its node is elsewhere, but " + who + ": " + name + " needs run");
   if (node.period_ticks != 1)
@@ -271,11 +273,15 @@ void assign_own_nodes(Scenario& scenario) {
   if (const auto& fusion = scenario.fusion; fusion && !fusion->node.empty())
     give_inner_role(scenario, fusion->node, fusion->node_where, OwnNodeRole::tracker,
                     "the fusion node starts its tracker", "tracker is asked at each tick");
-  for (const OwnNode& node : scenario.own_nodes)
+  for (const OwnNode& node : scenario.own_nodes) {
+    if (node.is_fmu && counts[node.name] > 1)
+      throw ConfigError(node.where + ": an FMU moves or turns one object, got " +
+                        std::to_string(counts[node.name]));
     if (node.role == OwnNodeRole::none)
       throw ConfigError(node.where + ": moves and turns no object (motion: {node: " + node.name +
                         "}), no sensor detects by it (detection: {node: " + node.name +
                         "}), and it makes no tracks (fusion: {node: " + node.name + "})");
+  }
 }
 
 }  // namespace

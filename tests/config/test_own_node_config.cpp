@@ -108,6 +108,29 @@ class NodesOfObjects : public testing::Test {
   }
 };
 
+// What is in the file is read when it is started.
+TEST_F(NodesOfObjects, AnFmuMovesOneObjectAndDoesNothingElse) {
+  const std::string unit = "[{name: unit, fmu: " DMISE_SOURCE_DIR
+                           "/README.md, outputs: {position_m: [x, y, z]}}]",
+                    one = "  - {name: a, motion: {node: unit}, radius_m: 1}\n";
+  const OwnNode node = load(one, unit).own_nodes.at(0);
+  EXPECT_TRUE(node.is_fmu);
+  EXPECT_THAT(node.run,
+              testing::ElementsAre("python3", "-m", "dmise.fmi", testing::EndsWith(".md")));
+  EXPECT_EQ(node.options_json,
+            R"({"inputs":{},"outputs":{"position_m":["x","y","z"]},"options":{}})");
+  const std::string two = one + "  - {name: b, motion: {node: unit}, radius_m: 1}\n";
+  EXPECT_THAT(config_error_of([&] { load(two, unit); }),
+              HasSubstr("nodes[0]: an FMU moves or turns one object, got 2"));
+  EXPECT_THAT(config_error_of([&] {
+                load(
+                    "  - {name: a, motion: {two_body: {semi_major_axis_m: 7e6, eccentricity: 0, "
+                    "inclination_deg: 0, raan_deg: 0, true_anomaly_deg: 0}}, radius_m: 1}\n",
+                    unit, ", detection: {node: unit}");
+              }),
+              HasSubstr("detection.node: an FMU moves or turns an object, and unit is one"));
+}
+
 TEST_F(NodesOfObjects, EachObjectHasItsPlaceAmongThoseOfItsNode) {
   const Scenario scenario = load(
       "  - {name: a, motion: {node: one}}\n"

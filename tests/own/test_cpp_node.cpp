@@ -187,6 +187,9 @@ TEST_F(CppNode, RefusesWhatIsNoBegin) {
   wrong = begin();
   wrong.set_sensor("alpha");
   EXPECT_THAT(why_begin_fails(wrong), HasSubstr("detect in the frames of alpha"));
+  wrong = begin();
+  wrong.mutable_tracking();
+  EXPECT_THAT(why_begin_fails(wrong), HasSubstr("make the tracks"));
   for (const char* text : {"", "[1]", "{", "{\"a\": nan}"})
     EXPECT_EQ(why_begin_fails(begin(text)), "begin: options_json: must be one JSON object");
   for (const double every_s : {0.0, -1.0, std::nan(""), 1e300}) {

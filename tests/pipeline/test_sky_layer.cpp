@@ -226,7 +226,7 @@ GridErrors errors_of_grid(const std::string& start, const std::string& camera,
   return errors;
 }
 
-// A whole frame of an all-sky sensor, in which the zodiacal table bends at many nodes.
+// A whole frame of an all-sky sensor, which sees many nodes of the zodiacal table.
 TEST(SkyLayer, EachLevelOfTheGridKeepsItsBoundOverTheWholeSky) {
   const GridErrors errors = errors_of_grid("2018-01-21T00:15:00Z", "omnissa", "20");
   for (std::size_t level = 0; level + 1 < SkyGrid::levels.size(); ++level) {
