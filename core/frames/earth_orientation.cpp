@@ -30,6 +30,12 @@ double angle_at(double angle_rad, double rate_rad_per_s, SimTime since) {
 
 }  // namespace
 
+void EarthOrientation::run_on(SimTime t) {
+  era_rad = eraAnp(angle_at(era_rad, era_rate_rad_per_s, t - time));
+  gmst82_rad = eraAnp(angle_at(gmst82_rad, gmst82_rate_rad_per_s, t - time));
+  time = t;
+}
+
 Rotation<Itrs, Gcrs> EarthOrientation::itrs_from_gcrs(SimTime t) const {
   const auto tirs_from_cirs = about_z<Tirs, Cirs>(angle_at(era_rad, era_rate_rad_per_s, t - time));
   return itrs_from_tirs * tirs_from_cirs * cirs_from_gcrs;

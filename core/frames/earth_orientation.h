@@ -24,6 +24,8 @@ struct EarthOrientation {
   double gmst82_rad = 0.0;  // Greenwich mean sidereal time, IAU 1982, at `time`
   double gmst82_rate_rad_per_s = 7.292115855306587e-5;
 
+  /// Moves `time` to `t`, and the angles with it.
+  void run_on(SimTime t);
   Rotation<Itrs, Gcrs> itrs_from_gcrs(SimTime t) const;
   /// By GMST-82 and polar motion, without the equation of the equinoxes (AIAA 2006-6753).
   Rotation<Itrs, Teme> itrs_from_teme(SimTime t) const;

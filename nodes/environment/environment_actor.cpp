@@ -5,11 +5,13 @@
 #include "core/base/units.h"
 #include "core/frames/earth_orientation.h"
 #include "core/orbit/interpolation.h"
+#include "core/propagation/run_on.h"
 #include "core/sky/sun_moon.h"
 
 namespace dmise {
 namespace {
 
+constexpr std::int64_t minute_ns = 60'000'000'000;
 constexpr double turbulence_wavelength_m = 500 * nm;
 
 /// Ticks between two states, at least one.
@@ -54,6 +56,15 @@ EnvironmentState environment_at(const Clock& clock, Tick tick, SimTime time) {
           .tt_jd2 = tt.jd2,
           .moon_velocity_m_per_s = bodies.moon_velocity_m_per_s,
           .earth_beside = std::nullopt};
+}
+
+EnvironmentState EnvironmentByMinutes::at(Tick tick, SimTime time) {
+  const SimTime whole{time.ns - time.ns % minute_ns};
+  if (!minute_ || minute_->time != whole) minute_ = environment_at(clock_, 0, whole);
+  EnvironmentState state = run_on(*minute_, time);
+  state.tick = tick;
+  state.earth.run_on(time);
+  return state;
 }
 
 EnvironmentState EnvironmentActor::common(Tick tick) const {

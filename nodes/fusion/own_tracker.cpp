@@ -11,7 +11,6 @@
 #include "core/base/printable.h"
 #include "core/fusion/live_track.h"
 #include "core/tracking/propagate.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise {
@@ -75,11 +74,11 @@ void add_sensor(const SensorConfig& sensor, v1::OwnNodeTracking& tracking) {
 OwnTracker::OwnTracker(const Scenario& scenario, const ObjectRoster& known, Clock clock,
                        OwnNodeSettings settings, Replay replay)
     : scenario_(scenario),
-      clock_(std::move(clock)),
+      environment_(clock),
       node_(*std::ranges::find(scenario.own_nodes, scenario.fusion->node, &OwnNode::name)),
       settings_(std::move(settings)),
       replay_(std::move(replay)),
-      forces_(clock_, SimTime{scenario.duration.ns / 2}),
+      forces_(clock, SimTime{scenario.duration.ns / 2}),
       restarts_(scenario.network, node_.name, settings_) {
   ObjectRoster told = known;
   for (ObjectInfo& object : told.objects) {
@@ -143,8 +142,7 @@ OwnTracker::Told OwnTracker::ask(Tick tick, std::span<const SearchedFrame> frame
   request.set_tick(tick);
   request.set_time_ns(scenario_.time_of(tick).ns);
   request.set_give_checkpoint(OwnRecord::wants_checkpoint(said_.next()));
-  std::vector<std::string> payloads{
-      encode(environment_at(clock_, tick, scenario_.time_of(tick))).payload};
+  std::vector<std::string> payloads{encode(environment_.at(tick, scenario_.time_of(tick))).payload};
   for (const SearchedFrame& frame : frames) {
     payloads.push_back(encode(*frame.report).payload);
     payloads.push_back(encode(*frame.found).payload);

@@ -11,6 +11,7 @@
 #include "core/config/scenario.h"
 #include "core/time/clock.h"
 #include "core/tracking/forces.h"
+#include "nodes/environment/environment_actor.h"
 #include "nodes/fusion/tracker.h"
 #include "nodes/own/own_node_run.h"
 
@@ -55,7 +56,7 @@ class OwnTracker : public Tracker {
   std::vector<CueWish> wishes_of(const v1::OwnNodePoints& points) const;
 
   const Scenario& scenario_;
-  Clock clock_;
+  EnvironmentByMinutes environment_;
   OwnNode node_;
   OwnNodeSettings settings_;
   Replay replay_;

@@ -5,13 +5,12 @@
 #include "core/base/formatted.h"
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/interpolation_error.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/own/joined_states.h"
 
 namespace dmise {
 namespace {
 
-constexpr Tick max_ahead = 16;                 // calls
+constexpr Tick max_ahead = 64;                 // calls
 constexpr std::size_t states_ahead = 100'000;  // of objects: 7 MB
 constexpr std::size_t calls_held = 3;          // for joining two, and for the error between three
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
@@ -46,7 +45,7 @@ OwnActor::OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock,
                    OwnNodeSettings settings)
     : scenario_(scenario),
       node_(node),
-      clock_(std::move(clock)),
+      environment_(std::move(clock)),
       settings_(std::move(settings)),
       restarts_(scenario.network, node.name, settings_) {
   for (const OwnObject& object : scenario.own_objects) {
@@ -136,8 +135,8 @@ v1::OwnNodeStep OwnActor::step_of(Tick call) const {
   return step;
 }
 
-EnvironmentState OwnActor::environment_of(Tick call) const {
-  return environment_at(clock_, tick_of(call), scenario_.time_of(tick_of(call)));
+EnvironmentState OwnActor::environment_of(Tick call) {
+  return environment_.at(tick_of(call), scenario_.time_of(tick_of(call)));
 }
 
 v1::OwnNodeBegin OwnActor::begin() const {

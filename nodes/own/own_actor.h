@@ -8,6 +8,7 @@
 #include "core/config/scenario.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
+#include "nodes/environment/environment_actor.h"
 #include "nodes/own/own_node_run.h"
 
 namespace dmise {
@@ -32,7 +33,7 @@ class OwnActor : public Actor {
   /// Asks for the next calls, several at once, so that neither waits for the other at each tick.
   bool ask();
   v1::OwnNodeStep step_of(Tick call) const;
-  EnvironmentState environment_of(Tick call) const;
+  EnvironmentState environment_of(Tick call);
   void start();
   void check(const ObjectStates& states) const;
   void look_at_errors();
@@ -43,7 +44,7 @@ class OwnActor : public Actor {
 
   const Scenario& scenario_;
   OwnNode node_;
-  Clock clock_;
+  EnvironmentByMinutes environment_;
   OwnNodeSettings settings_;
   std::vector<const OwnObject*> objects_;  // in the scenario's order
   std::vector<std::uint32_t> turned_;      // of these, by index

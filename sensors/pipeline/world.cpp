@@ -5,11 +5,10 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
-#include "core/base/units.h"
 #include "core/config/object_names.h"
 #include "core/frames/rotation_angle.h"
 #include "core/orbit/interpolation.h"
-#include "core/sky/sun_moon.h"
+#include "core/propagation/run_on.h"
 
 namespace dmise {
 
@@ -176,24 +175,6 @@ double World::turn_rad(std::size_t i, SimTime start, SimTime end) const {
     }
   }
   return turn;
-}
-
-EnvironmentState run_on(EnvironmentState state, SimTime t) {
-  const double dt_s = (t - state.time).seconds();
-  const SolarSystem later = advance({.sun_m = state.sun_m,
-                                     .moon_m = state.moon_m,
-                                     .earth_barycentric_m = state.earth_barycentric_m,
-                                     .earth_velocity_m_per_s = state.earth_velocity_m_per_s,
-                                     .moon_velocity_m_per_s = state.moon_velocity_m_per_s},
-                                    dt_s);
-  state.sun_m = later.sun_m;
-  state.moon_m = later.moon_m;
-  state.earth_barycentric_m = later.earth_barycentric_m;
-  state.earth_velocity_m_per_s = later.earth_velocity_m_per_s;
-  state.moon_velocity_m_per_s = later.moon_velocity_m_per_s;
-  state.tt_jd2 += dt_s / day_s;
-  state.time = t;
-  return state;
 }
 
 EnvironmentState World::environment(SimTime t) const {

@@ -21,10 +21,6 @@ struct Motion {
 /// derivative, so that a velocity agrees with its path.
 Motion cubic_motion(double u, double tick_s, const Motion& before, const Motion& after);
 
-/// The environment at `t`, up to an hour after `state`: Sun, Moon and Earth by `advance`; the
-/// orientation keeps its own time and runs on by its own rates.
-EnvironmentState run_on(EnvironmentState state, SimTime t);
-
 /// The published states around an exposure: the last few ticks of what actors said, interpolated.
 class World {
  public:

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "core/base/units.h"
 #include "core/sky/place_effects.h"
 #include "core/sky/sun_moon.h"
@@ -52,6 +54,38 @@ TEST(Environment, GoesOnBetweenTwoStates) {
   const auto before = stage.world.environment(sim_seconds(3599.999));
   const auto after = stage.world.environment(sim_seconds(3600));
   EXPECT_LT(angle_rad(before.moon_m, after.moon_m), 1.0 * arcsec);
+}
+
+// Programs of the user's hear of the ephemeris at whole minutes, run on: against ERFA at the ticks.
+TEST(Environment, ByMinutesIsThatOfTheTick) {
+  for (const char* start : {"1972-06-30T23:59:30Z", "2018-01-28T04:00:00Z", "2016-12-31T23:59:00Z",
+                            "2049-10-03T11:00:00Z"}) {
+    test::Stage stage(std::string("simulation: {start: ") + start +
+                      ", duration_s: 300, tick_s: 10}\nsensors:\n" + ground + "}\n");
+    const Clock clock = make_clock(stage.scenario);
+    EnvironmentByMinutes minutes(clock);
+    for (const double t_s : {0.0, 0.1, 59.9, 60.0, 61.0, 119.999, 3599.0, 86359.5, 30.0}) {
+      const SimTime t = sim_seconds(t_s);
+      const EnvironmentState state = minutes.at(7, t), exact = environment_at(clock, 7, t);
+      EXPECT_EQ(state.tick, 7);
+      EXPECT_EQ(state.time, t);
+      EXPECT_EQ(state.earth.time, t);
+      EXPECT_LT(angle_rad(state.sun_m, exact.sun_m), 0.002 * arcsec) << t_s;
+      EXPECT_LT(angle_rad(state.moon_m, exact.moon_m), 0.002 * arcsec) << t_s;
+      EXPECT_LT(norm(state.earth_velocity_m_per_s - exact.earth_velocity_m_per_s), 1e-3) << t_s;
+      const Vec<Gcrs> x{1, 0, 0}, z{0, 0, 1};
+      for (const Vec<Gcrs>& axis : {x, z})
+        EXPECT_LT(
+            angle_rad(state.earth.itrs_from_gcrs(t) * axis, exact.earth.itrs_from_gcrs(t) * axis),
+            0.0002 * arcsec)
+            << t_s;
+      EXPECT_NEAR(std::remainder(state.earth.gmst82_rad - exact.earth.gmst82_rad, 2 * pi), 0.0,
+                  1e-9)
+          << t_s;
+    }
+    EXPECT_EQ(minutes.at(6, sim_seconds(60)).sun_m,
+              environment_at(clock, 6, sim_seconds(60)).sun_m);
+  }
 }
 
 // The 5/7 model: r0 4.96 cm and an isoplanatic angle of 6.89 urad at 0.5 um. The frame says so too.

@@ -37,7 +37,7 @@ class StatesWriter:
         self._names = [one.name for one in objects]
         self._moves = any(one.moved for one in objects)
         self._turned = [i for i, one in enumerate(objects) if one.turned]
-        self._message = protocol.ObjectStates(count=len(objects))
+        message = protocol.ObjectStates(count=len(objects))
         self._arrays: dict[str, npt.NDArray[Any]] = {}
         n, m = len(objects), len(self._turned)
         layout = [("position_m", "float64", (3, n)), ("slope_m_per_s", "float64", (3, n)),
@@ -48,10 +48,11 @@ class StatesWriter:
         self._bytes = bytearray(sum(math.prod(shape) * np.dtype(kind).itemsize for _, kind, shape in layout))
         offset = 0
         for name, kind, shape in layout:
-            self._message.arrays.add(name=name, type=kind, shape=shape, offset_bytes=offset)
+            message.arrays.add(name=name, type=kind, shape=shape, offset_bytes=offset)
             array: npt.NDArray[Any] = np.ndarray(shape, np.dtype(kind).newbyteorder("<"), self._bytes, offset)
             self._arrays[name] = array
             offset += array.nbytes
+        self._layout = message.SerializeToString()  # fields follow each other in any order
         if m:
             self._arrays["attitude_object"][:] = self._turned
 
@@ -77,8 +78,8 @@ class StatesWriter:
         if self._turned:
             self._write("gcrs_from_body", gcrs_from_body, self._turned)
             self._write("attitude_rate_rad_per_s", rate_rad_per_s, self._turned)
-        self._message.tick, self._message.time_ns = tick, time_ns
-        return [self._message.SerializeToString(), bytes(self._bytes)]
+        at = protocol.ObjectStates(tick=tick, time_ns=time_ns).SerializeToString()
+        return [at + self._layout, bytes(self._bytes)]
 
     def _write(self, name: str, values: Floats | None, columns: list[int] | slice = slice(None)) -> None:
         self._arrays[name][:] = 0.0 if values is None else values[:, columns]
@@ -113,9 +114,10 @@ def _matrix(state: State, name: str, rows: int, count: int) -> Floats | None:
     value = getattr(state, name)
     if value is None:
         return None
-    if count == 1 and np.ndim(value) == 1:
-        return _shaped(value, (rows,), name).reshape(rows, 1)
-    return _shaped(value, (rows, count), name)
+    numbers = np.asarray(value, dtype=np.float64)
+    if count == 1 and numbers.ndim == 1:
+        return _shaped(numbers, (rows,), name).reshape(rows, 1)
+    return _shaped(numbers, (rows, count), name)
 
 
 def _shaped(value: Any, shape: tuple[int, ...], name: str) -> Floats:
