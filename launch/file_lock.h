@@ -11,11 +11,17 @@ class FileLock {
  public:
   /// Creates the file and its parent directories. Throws `Error` if that fails.
   explicit FileLock(const std::string& path);
+  /// Of an open file, which it closes.
+  explicit FileLock(int descriptor) : fd_(descriptor) {}
   ~FileLock();
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;
 
-  /// False if another process holds any of it.
+  int descriptor() const { return fd_; }
+  /// Keeps the file open and locked until the process ends.
+  void leave_open() { fd_ = -1; }
+
+  /// False if another process holds any of it. Throws `Error` if the file system has no locks.
   bool take();
 
   enum class Use { alone, shared };

@@ -1,36 +1,47 @@
 #pragma once
-#include <chrono>
-#include <condition_variable>
-#include <functional>
+#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
-#include "launch/lock_holder.h"
+#include "launch/file_lock.h"
 
 namespace dmise {
 
-/// Exclusive right to write products into a directory: `DIRECTORY/.run-lock`, a file that names the
-/// holder. It is created atomically (link), so that one of several simultaneous starts wins, on any
-/// file system that hosts share. The holder also locks it by fcntl, which child processes inherit:
-/// the directory is locked until the last of them has ended. The holder touches the file every
-/// `lock_beat_s`. The lock of an ended process is taken over (`has_ended`).
+/// The process that holds the lock of a directory, as its lock file names it.
+struct LockHolder {
+  std::string host;  // name of the machine or container
+  std::int64_t pid = 0;
+  std::string since_utc, command;
+  std::uint64_t run_id = 0;  // of the time-master; 0: not yet known
+};
+
+/// This process.
+LockHolder this_process();
+
+/// One line of JSON with a length independent of `run_id`.
+std::string lock_text(const LockHolder& holder);
+/// Parses a lock file; empty if it is incomplete.
+std::optional<LockHolder> parse_lock(const std::string& text);
+
+/// "pid 123 on HOST since 2018-01-21T00:15:00Z: COMMAND"
+std::string describe(const LockHolder& holder);
+
+/// Exclusive right to write products into a directory: the kernel's lock on `DIRECTORY/.run-lock`,
+/// a file that names the holder. Child processes inherit it: the directory is locked until the last
+/// of them has ended, however it ends.
 class RunLock {
  public:
   /// Throws `ConfigError` "DIRECTORY: is in use by ..." if another process holds it, and `Error` if
-  /// the file cannot be written. Processes left by a dead holder get `patience_s` to end. `on_loss`
-  /// is called, from a thread, with one line if the lock was removed or taken by force.
-  explicit RunLock(std::string directory,
-                   std::function<void(const std::string&)> on_loss = end_process,
-                   double patience_s = 15.0);
+  /// the file can't be written or its file system has no locks. Processes that a dead holder has
+  /// left get `patience_s` to end.
+  explicit RunLock(const std::string& directory, double patience_s = 15.0);
   /// Removes the file.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
 
-  /// Stores the run id in the lock, for `dmise join`.
+  /// Writes the run id into the lock file, for `dmise join`.
   void set_run_id(std::uint64_t run_id);
 
   /// Leaves the lock to the program that replaces this process by exec.
@@ -39,27 +50,14 @@ class RunLock {
   /// Content of the lock file of a directory, whether its holder is alive or not.
   static std::optional<LockHolder> written_in(const std::string& directory);
 
-  /// Prints the line on stderr and exits with 1: another process writes to the same directory.
-  static void end_process(const std::string& line);
-
  private:
-  /// How long another holder's lock has been observed without a touch.
-  struct Watch {
-    double touched = 0.0;
-    std::chrono::steady_clock::time_point since;
-  };
-  bool try_to_take(Watch& watch, bool last);
-  void beat();
-  std::string loss() const;
+  /// False if the holder may be about to end.
+  bool try_to_take(const std::string& directory, bool last);
+  bool write_holder();
 
-  std::string directory_, path_;
+  std::string path_;
   LockHolder self_;
-  int fd_ = -1;
-  std::function<void(const std::string&)> on_loss_;
-  std::mutex mutex_;  // guards what follows
-  std::condition_variable woken_;
-  bool ending_ = false;
-  std::thread beating_;
+  std::optional<FileLock> file_;
 };
 
 /// Creates a directory and locks it.

@@ -4,14 +4,24 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <random>
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/text_file.h"
-#include "launch/lock_holder.h"
 #include "launch/supervisor.h"
 
 namespace dmise {
+namespace {
+
+/// 32 hexadecimal digits from the kernel's random numbers.
+std::string random_token() {
+  std::random_device random;
+  return formatted("%08x%08x%08x%08x", random(), random(), random(), random());
+}
+
+}  // namespace
+
 std::vector<std::string> gateway_command(const ViewOptions& options) {
   std::vector<std::string> command{program_directory() + "/dmise-gateway", "--master",
                                    options.master, "--listen", options.listen};
