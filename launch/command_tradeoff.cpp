@@ -11,7 +11,6 @@
 #include "core/base/text_file.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
-#include "core/pictures/picture_file.h"
 #include "launch/commands.h"
 #include "launch/notes.h"
 #include "launch/progress.h"
@@ -84,7 +83,6 @@ void tradeoff(const TradeoffOptions& options) {
                                      std::to_string(options.frame),
                                  rows));
   write_file_whole(options.out + "/budgets.svg", chart_svg(budgets_chart(rows)));
-  write_picture(options.out + "/budgets.png", chart_picture(budgets_chart(rows)));
   for (const auto& kind : error_kinds)
     write_file_whole(options.out + "/" + kind.key + ".svg", chart_svg(effects_chart(rows, kind)));
   for (const auto& note : trade.notes()) print_note(note);

@@ -14,7 +14,6 @@
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
-#include "core/pictures/picture_file.h"
 #include "core/sky/sun_moon.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
@@ -138,7 +137,6 @@ void write_products(const std::string& directory, const PassList& list, const st
   write_file_whole(directory + "/passes.jsonl", pass_jsonl(list));
   write_file_whole(directory + "/counts.csv", counts);
   write_file_whole(directory + "/figure.svg", chart_svg(chart));
-  write_picture(directory + "/figure.png", chart_picture(chart));
 }
 
 void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
@@ -189,7 +187,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   write_products(directory, list, counts_csv(found, grid, clock),
                  range_figure(track, grid, population.elements, found, figure));
   if (!options.csv && !options.jsonl)
-    std::printf("-> %s/passes.csv, passes.jsonl, counts.csv, figure.svg, figure.png\n",
+    std::printf("-> %s/passes.csv, passes.jsonl, counts.csv, figure.svg\n",
                 directory.c_str());
 }
 

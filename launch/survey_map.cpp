@@ -161,9 +161,4 @@ std::string map_svg(const SurveyMap& map) {
                    [&](ChartPen& pen) { draw_map(map, pen); });
 }
 
-Picture map_picture(const SurveyMap& map) {
-  return drawn_picture(width_px, height_of(shown_shells(map).size()),
-                       [&](ChartPen& pen) { draw_map(map, pen); });
-}
-
 }  // namespace dmise

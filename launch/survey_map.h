@@ -2,7 +2,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/image.h"
 #include "sensors/survey/survey_summary.h"
 
 namespace dmise {
@@ -23,6 +22,5 @@ struct SurveyMap {
 };
 
 std::string map_svg(const SurveyMap& map);
-Picture map_picture(const SurveyMap& map);
 
 }  // namespace dmise

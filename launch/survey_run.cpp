@@ -12,7 +12,6 @@
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
-#include "core/pictures/picture_file.h"
 #include "core/time/iso8601.h"
 #include "launch/notes.h"
 #include "launch/progress.h"
@@ -130,7 +129,7 @@ class Survey {
     if (command_.json)
       std::fputs(survey_json(report).c_str(), stdout);
     else
-      std::printf("%s-> %s/survey.json, map.svg, map.png\n", survey_text(report).c_str(),
+      std::printf("%s-> %s/survey.json, map.svg\n", survey_text(report).c_str(),
                   command_.out.c_str());
   }
 
@@ -245,7 +244,6 @@ class Survey {
         sum.expected += cell.expected;
       }
     write_file_whole(command_.out + "/map.svg", map_svg(map));
-    write_picture(command_.out + "/map.png", map_picture(map));
   }
 
   void print_notes() const {

@@ -2,7 +2,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/image.h"
 #include "core/image/drawing.h"
 
 namespace dmise {
@@ -35,7 +34,7 @@ struct ChartBand {
   double from = 0.0, to = 0.0;
 };
 
-/// Line chart with two axes and a legend, for a picture or a page.
+/// Line chart with two axes and a legend.
 struct Chart {
   std::string title, subtitle;
   ChartAxis x, y;
@@ -51,8 +50,5 @@ std::vector<ChartTick> logarithmic_ticks(double least, double most);
 
 /// Renders as SVG 1.1. Equal charts give equal text.
 std::string chart_svg(const Chart& chart);
-
-/// Renders as an antialiased picture.
-Picture chart_picture(const Chart& chart);
 
 }  // namespace dmise

@@ -43,8 +43,7 @@ class ChartPen {
 
 void draw_chart(const Chart& chart, ChartPen& pen);
 
-/// What `draw` draws, as SVG 1.1 and as an antialiased picture on white.
+/// What `draw` draws, as SVG 1.1.
 std::string drawn_svg(int width_px, int height_px, const std::function<void(ChartPen&)>& draw);
-Picture drawn_picture(int width_px, int height_px, const std::function<void(ChartPen&)>& draw);
 
 }  // namespace dmise

@@ -85,12 +85,12 @@ def first_frame(g, picture):
 
 def survey(g, picture):
     g.call(g.dmise, "survey", ROOT / "launch/scenarios/survey.yaml", "--out", g.work / "survey")
-    g.shrunk(g.work / "survey/map.png", picture, 960)
+    shutil.copy(g.work / "survey/map.svg", g.out / picture)
 
 
 def figure5(g, picture):
     g.call(g.dmise, "visible", ROOT / "launch/scenarios/figure5.yaml", "--out", g.work / "figure5", "--rows", 1, "--sunlit")
-    g.shrunk(g.work / "figure5/atlanta/figure.png", picture, 960)
+    shutil.copy(g.work / "figure5/atlanta/figure.svg", g.out / picture)
 
 
 def live_view(g, picture):
@@ -113,7 +113,7 @@ PICTURES = {
     "detector.png": by("docs/gallery/detector.py", "DMISE"), "evaluators.png": by("docs/gallery/evaluators.py", "DMISE"),
     "sky.png": by("docs/gallery/sky.py", "DMISE"), "psf.png": psf,
     "box-wing.png": drawn, "starlink-like.png": drawn, "light-curve.png": drawn, "inspector.png": drawn,
-    "demo.png": first_frame, "figure5.png": figure5, "survey.png": survey,
+    "demo.png": first_frame, "figure5.svg": figure5, "survey.svg": survey,
     "report.png": report, "report-frame.jpg": report, "live-view.png": live_view, "live-view-objects.png": live_view,
     **{f"scenario-{name}.png": by("docs/gallery/scenarios.py", "DMISE") for name in ("close-up", "cooperate", "dataset", "three-sites")},
 }

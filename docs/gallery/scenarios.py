@@ -21,7 +21,7 @@ WIDTH_PX = 480
 # Pictures that other documents have already; of the paper's scenarios that of the results beside it.
 SHARED = {"accuracy-all-sky": "gallery/accuracy-all-sky.svg", "accuracy-resolved": "gallery/accuracy-resolved.svg",
           "accuracy-space": "gallery/accuracy-space.svg", "demo": "gallery/demo.png", "evaluators": "gallery/evaluators.png",
-          "figure5": "gallery/figure5.png", "inspector": "gallery/inspector.png", "survey": "gallery/survey.png",
+          "figure5": "gallery/figure5.svg", "inspector": "gallery/inspector.png", "survey": "gallery/survey.svg",
           "paper/figure6": "paper/figure6.png", "paper/figure8": "paper/figure8.png"}
 # Drawn by this script: frame of which sensor, how long the run takes of the scenario's time, and what of the frame is shown.
 DRAWN = {"close-up": ("near-eye", None, None), "three-sites": ("atlanta", 15, (512, 512)), "cooperate": (None, 30, (360, 480)),

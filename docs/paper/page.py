@@ -77,7 +77,7 @@ def text(found):
         "These mean a focal length of 8.98 mm and a focal ratio of 0.24, which no lens has: the aperture is a collecting area "
         "(`equivalent_aperture`).\n",
         "## Figure 5: ranges over Atlanta\n",
-        "![Range against time of sunlit objects in the field](gallery/figure5.png)\n",
+        "![Range against time of sunlit objects in the field](gallery/figure5.svg)\n",
         f"{five['catalogue']}, over a day: {five['passes']:,} partly sunlit passes of {five['objects']:,} objects. The paper plots 17,356 objects "
         "of a catalogue that it does not date; as there, most are in low orbits "
         f"({100 * five['low_share']:.0f} % of the passes). Equal to a test of every object at every instant ([visibility](models/visibility.md)).\n",
