@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/fusion/assignment.h"
+#include "core/base/assignment.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"
 #include "core/tracking/line_of_light.h"

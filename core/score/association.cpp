@@ -1,8 +1,6 @@
 #include "core/score/association.h"
 
-#include <limits>
-#include <queue>
-
+#include "core/base/assignment.h"
 #include "core/score/trail.h"
 
 namespace dmise {
@@ -47,80 +45,31 @@ std::vector<std::vector<Pair>> possible_pairs(std::span<const TrueSource> truths
   return pairs;
 }
 
-/// The largest one-to-one assignment with the least sum of costs: truths enter one at a time, each
-/// by the shortest augmenting path (Bellman and Ford, since the way back along a taken pair has a
-/// negative cost).
-class Assignment {
- public:
-  Assignment(const std::vector<std::vector<Pair>>& pairs, std::size_t detections)
-      : pairs_(pairs), truth_of_(detections, none), detection_of_(pairs.size(), none) {
-    while (augment()) {
-    }
-  }
-  const std::vector<std::size_t>& detection_of() const { return detection_of_; }
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-
- private:
-  bool augment() {
-    constexpr double far = std::numeric_limits<double>::infinity();
-    std::vector<double> to_truth(pairs_.size(), far), to_detection(truth_of_.size(), far);
-    std::vector<std::size_t> from(truth_of_.size(), none);
-    std::queue<std::size_t> open;
-    std::vector<bool> queued(pairs_.size(), false);
-    for (std::size_t t = 0; t < pairs_.size(); ++t)
-      if (detection_of_[t] == none && !pairs_[t].empty()) to_truth[t] = 0.0, open.push(t);
-    while (!open.empty()) {
-      const std::size_t t = open.front();
-      open.pop();
-      queued[t] = false;
-      for (const Pair& pair : pairs_[t]) {
-        const double cost = to_truth[t] + pair.cost;
-        if (detection_of_[t] == pair.detection || cost >= to_detection[pair.detection] - 1e-12)
-          continue;
-        to_detection[pair.detection] = cost;
-        from[pair.detection] = t;
-        const std::size_t next = truth_of_[pair.detection];
-        if (next == none) continue;
-        to_truth[next] = cost - cost_of(next, pair.detection);
-        if (!queued[next]) open.push(next), queued[next] = true;
-      }
-    }
-    std::size_t end = none;
-    for (std::size_t k = 0; k < truth_of_.size(); ++k)
-      if (truth_of_[k] == none && to_detection[k] < far &&
-          (end == none || to_detection[k] < to_detection[end]))
-        end = k;
-    if (end == none) return false;
-    while (end != none) {
-      const std::size_t t = from[end], before = detection_of_[t];
-      truth_of_[end] = t;
-      detection_of_[t] = end;
-      end = before;
-    }
-    return true;
-  }
-  double cost_of(std::size_t truth, std::size_t detection) const {
-    for (const Pair& pair : pairs_[truth])
-      if (pair.detection == detection) return pair.cost;
-    return 0.0;
-  }
-
-  const std::vector<std::vector<Pair>>& pairs_;
-  std::vector<std::size_t> truth_of_, detection_of_;
-};
+/// The detection of each truth, or `unassigned`: of the assignments with most pairs the one with
+/// the least sum of costs.
+std::vector<std::size_t> assigned(const std::vector<std::vector<Pair>>& pairs,
+                                  std::size_t detections) {
+  double sum = 1.0;
+  for (const auto& of_truth : pairs)
+    for (const Pair& pair : of_truth) sum += pair.cost;
+  std::vector<Pairing> possible;  // one more pair is worth more than all costs together
+  for (std::size_t t = 0; t < pairs.size(); ++t)
+    for (const Pair& pair : pairs[t]) possible.push_back({t, pair.detection, pair.cost - sum});
+  return assign(pairs.size(), detections, possible);
+}
 
 }  // namespace
 
 Association associate(std::span<const TrueSource> truths, std::span<const FoundSource> detections,
                       double gate_px) {
   const auto pairs = possible_pairs(truths, detections, gate_px);
-  const Assignment assignment(pairs, detections.size());
+  const auto assignment = assigned(pairs, detections.size());
   Association out;
   out.detection_of_truth.resize(truths.size());
   out.pieces_of_truth.resize(truths.size());
   std::vector<bool> taken(detections.size(), false);
   for (std::size_t t = 0; t < truths.size(); ++t)
-    if (const std::size_t k = assignment.detection_of()[t]; k != Assignment::none)
+    if (const std::size_t k = assignment[t]; k != unassigned)
       out.detection_of_truth[t] = k, taken[k] = true;
   for (std::size_t k = 0; k < detections.size(); ++k) {
     if (taken[k]) continue;

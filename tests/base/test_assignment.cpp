@@ -1,4 +1,4 @@
-#include "core/fusion/assignment.h"
+#include "core/base/assignment.h"
 
 #include <gtest/gtest.h>
 
