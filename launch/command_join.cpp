@@ -182,9 +182,9 @@ class Join {
     if (stop_.is_set()) throw ExitWith{130};
   }
 
-  bool writes_products(const std::string& name) const {
+  bool writes_files(const std::string& name) const {
     const NodeKind* kind = kind_of_node(name, scenario_);
-    return kind && kind->writes_products;
+    return kind && dmise::writes_files(*kind, name, scenario_);
   }
 
   std::vector<std::string> arguments(const std::string& name) const {
@@ -199,7 +199,7 @@ class Join {
       add({"--publish", host, "--subscribe", host, "--observe", host});
     else
       add({"--host", host, "--config", options_.scenario});
-    if (writes_products(name)) add({"--out", options_.out});
+    if (writes_files(name)) add({"--out", options_.out});
     if (kind && kind->each_sensor)
       add({"--digest", digest_, "--seed", std::to_string(scenario_.seed)});
     if (kind && kind->each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
@@ -231,7 +231,7 @@ class Join {
   }
 
   [[noreturn]] void become_node(const std::string& name) {
-    if (writes_products(name)) enter_directory();
+    if (writes_files(name)) enter_directory();
     const std::vector<std::string> command = arguments(name);
     std::fprintf(stderr, "joining %s as %s\n", master_.c_str(), name.c_str());
     // From here on signals end the process, or belong to the node.

@@ -8,7 +8,7 @@
 #include "core/config/node_kinds.h"
 #include "launch/make_fusion.h"
 #include "nodes/environment/environment_actor.h"
-#include "nodes/fusion/fusion_journal.h"
+#include "nodes/own/input_journal.h"
 #include "nodes/own/own_actor.h"
 #include "nodes/own/own_detector.h"
 #include "nodes/runtime/process/event.h"
@@ -40,6 +40,7 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
   return std::make_unique<OwnActor>(
       parts.scenario, node, make_clock(parts.scenario),
       OwnNodeSettings{.log_path = parts.directory + "/logs/" + name + ".log",
+                      .journal_path = input_journal_path(parts.directory, name),
                       .error_prefix = name + ": ",
                       .note = parts.note,
                       .stop = &stop_signal()});
@@ -86,19 +87,26 @@ std::optional<Tick> unfinished_positions(const std::string&, const Scenario&,
   return std::max<Tick>(0, last_tick_written(directory));
 }
 
-std::optional<Tick> unfinished_tracks(const std::string&, const Scenario& scenario,
-                                      const std::string& directory) {
-  const Tick next = FusionJournal::ticks_written(fusion_journal_path(directory));
+/// The first tick that is not in the journal of a node.
+std::optional<Tick> unfinished_journal(const std::string& node, const Scenario& scenario,
+                                       const std::string& directory) {
+  const Tick next = InputJournal::ticks_written(input_journal_path(directory, node));
   return next > scenario.last_tick() ? std::nullopt : std::optional(next);
+}
+
+std::optional<Tick> unfinished_own_node(const std::string& node, const Scenario& scenario,
+                                        const std::string& directory) {
+  const bool has_journal = writes_files(*kind_of_node(node, scenario), node, scenario);
+  return has_journal ? unfinished_journal(node, scenario, directory) : std::nullopt;
 }
 
 constexpr NodeMaker makers[] = {
     {orbit_node, make_orbit, no_products},
     {environment_node, make_environment, no_products},
-    {any_own_node, make_own_node, no_products},
+    {any_own_node, make_own_node, unfinished_own_node},
     {any_sensor, make_one_sensor, unfinished_frame},
     {positions_node, make_positions, unfinished_positions},
-    {fusion_node, make_fusion_node, unfinished_tracks},
+    {fusion_node, make_fusion_node, unfinished_journal},
 };
 
 }  // namespace

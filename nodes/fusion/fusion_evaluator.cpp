@@ -60,7 +60,7 @@ FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
       clock_(std::move(clock)),
       directory_(directory),
       settings_(std::move(settings)),
-      journal_(fusion_journal_path(directory)) {
+      journal_(input_journal_path(directory, fusion_node)) {
   std::vector<CuedSensor> cued;
   for (const SensorConfig& sensor : scenario.sensors)
     if (auto one = cued_sensor(sensor)) {

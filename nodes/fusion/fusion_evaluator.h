@@ -12,9 +12,9 @@
 #include "core/fusion/scheduler.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
-#include "nodes/fusion/fusion_journal.h"
 #include "nodes/fusion/line_file.h"
 #include "nodes/fusion/tracker.h"
+#include "nodes/own/input_journal.h"
 #include "nodes/own/own_node_run.h"
 
 namespace dmise {
@@ -64,7 +64,7 @@ class FusionEvaluator : public Evaluator {
   std::string directory_;
   OwnNodeSettings settings_;
   std::unique_ptr<Tracker> tracker_;  // once the roster is known
-  FusionJournal journal_;
+  InputJournal journal_;
   std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
   std::set<std::pair<std::string, std::string_view>> noted_;  // sensors and obstacles
