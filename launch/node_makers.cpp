@@ -35,8 +35,8 @@ std::unique_ptr<Participant> make_environment(const std::string&, NodeParts& par
 std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& parts) {
   const auto& nodes = parts.scenario.own_nodes;
   const OwnNode& node = *std::ranges::find(nodes, name, &OwnNode::name);
-  if (const auto found = parts.replayed.find(name); found != parts.replayed.end())
-    return std::move(found->second);
+  auto& actors = parts.replayed.actors;
+  if (const auto found = actors.find(name); found != actors.end()) return std::move(found->second);
   return std::make_unique<OwnActor>(
       parts.scenario, node, make_clock(parts.scenario),
       OwnNodeSettings{.log_path = parts.directory + "/logs/" + name + ".log",
@@ -47,9 +47,10 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
 }
 
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
-  SourceFinder finder =
-      own_finder(parts.scenario, node, parts.directory,
-                 {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
+  SourceFinder finder = std::move(parts.replayed.finders[node]);
+  if (!finder)
+    finder = own_finder(parts.scenario, node, parts.directory,
+                        {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
                      parts.threads, std::move(finder));
 }
@@ -61,7 +62,8 @@ std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts
 
 std::unique_ptr<Participant> make_fusion_node(const std::string& name, NodeParts& parts) {
   return make_fusion(parts.scenario, make_clock(parts.scenario), parts.directory,
-                     {.error_prefix = name + ": ", .note = parts.note, .stop = &stop_signal()});
+                     {.error_prefix = name + ": ", .note = parts.note, .stop = &stop_signal()},
+                     std::move(parts.replayed.tracker));
 }
 
 std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {

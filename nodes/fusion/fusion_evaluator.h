@@ -33,6 +33,9 @@ class FusionEvaluator : public Evaluator {
   FusionEvaluator(const Scenario& scenario, Clock clock, const std::string& directory,
                   OwnNodeSettings settings = {});
 
+  /// Takes what was said in a recorded run for what the scenario's tracker says; before a step.
+  void replay(std::shared_ptr<Tracker> recorded) { tracker_ = std::move(recorded); }
+
   std::string name() const override { return fusion_node; }
   std::vector<std::string> produces() const override;
   /// The roster, and frames and detections of each sensor that detects.
@@ -63,7 +66,8 @@ class FusionEvaluator : public Evaluator {
   Clock clock_;
   std::string directory_;
   OwnNodeSettings settings_;
-  std::unique_ptr<Tracker> tracker_;  // once the roster is known
+  std::shared_ptr<Tracker> tracker_;  // once the roster is known
+  bool knows_roster_ = false;
   InputJournal journal_;
   std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
