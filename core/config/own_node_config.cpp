@@ -177,7 +177,8 @@ void write_inputs(JsonWriter& json, const YamlValue& value) {
   map.done();
 }
 
-void write_outputs(JsonWriter& json, const YamlValue& value) {
+void write_outputs(JsonWriter& json, const YamlValue& value, OwnNode& node) {
+  node.fmu_outputs_where = value.place();
   YamlMap map(value, fmu_outputs_section());
   for (const auto& [key, count] :
        {std::pair("position_m", 3u), std::pair("velocity_m_per_s", 3u),
@@ -189,18 +190,19 @@ void write_outputs(JsonWriter& json, const YamlValue& value) {
     if (variables.size() != count)
       names->fail("must be " + std::to_string(count) + " names of variables", false);
     json.list(key, variables);
+    node.fmu_outputs.push_back(key);
   }
   map.done();
 }
 
 /// What `dmise.fmi` is told: the tables of the node, and its options.
-std::string fmu_json(YamlMap& map, const std::string& options) {
+std::string fmu_json(YamlMap& map, OwnNode& node) {
   JsonWriter json;
   json.begin_object().key("inputs").begin_object();
   if (const auto inputs = map.find("inputs")) write_inputs(json, *inputs);
   json.end_object().key("outputs").begin_object();
-  write_outputs(json, map.require("outputs"));
-  json.end_object().key("options").raw(options);
+  write_outputs(json, map.require("outputs"), node);
+  json.end_object().key("options").raw(node.options_json);
   return json.end_object().take();
 }
 
@@ -229,7 +231,7 @@ OwnNode read_own_node(const YamlValue& value) {
   const bool elsewhere = map.flag_or("elsewhere", false);
   node.period_ticks = map.integer_or("period_ticks", 1);
   if (const auto options = map.find("options")) node.options_json = read_options(*options);
-  if (fmu) node.options_json = fmu_json(map, node.options_json);
+  if (fmu) node.options_json = fmu_json(map, node);
   node.is_fmu = bool(fmu);
   read_consumes(map, node);
   map.done();

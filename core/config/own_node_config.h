@@ -30,6 +30,8 @@ struct OwnNode {
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
   bool is_fmu = false;                   // which moves or turns one object
+  std::vector<std::string> fmu_outputs;  // that its table has: "position_m"
+  std::string fmu_outputs_where;         // `file:line:column: nodes[0].outputs`
   std::vector<HeardTopics> hears;
   std::vector<std::string> consumes;  // the topics of the scenario that these are, sorted
   Tick delay_ticks = 1;               // after which it hears them

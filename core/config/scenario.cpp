@@ -1,6 +1,7 @@
 #include "core/config/scenario.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <set>
@@ -290,6 +291,15 @@ void find_topics(const Scenario& scenario, OwnNode& node) {
   node.consumes.assign(found.begin(), found.end());
 }
 
+/// Throws `ConfigError` for an FMU that does not say what an object needs of it.
+void require_outputs(const OwnNode& node, std::initializer_list<const char*> outputs,
+                     const char* does) {
+  for (const char* output : outputs)
+    if (node.is_fmu && std::ranges::count(node.fmu_outputs, output) == 0)
+      throw ConfigError(node.fmu_outputs_where + ": lacks " + output + ", which an FMU that " +
+                        does + " an object must say");
+}
+
 /// Gives each object that a node moves or turns its place among those of the node, and each node
 /// its role.
 void assign_own_nodes(Scenario& scenario) {
@@ -299,11 +309,15 @@ void assign_own_nodes(Scenario& scenario) {
     auto* motion = model ? std::get_if<NodeMotion>(model) : nullptr;
     auto* attitude = object.attitude ? std::get_if<NodeAttitude>(&object.attitude->model) : nullptr;
     if (motion) {
-      give_role(scenario, motion->node, object.motion.node_where, OwnNodeRole::actor);
+      require_outputs(
+          give_role(scenario, motion->node, object.motion.node_where, OwnNodeRole::actor),
+          {"position_m", "velocity_m_per_s"}, "moves");
       motion->place = counts[motion->node]++;
     }
     if (!attitude) continue;
-    give_role(scenario, attitude->node, object.attitude->node_where, OwnNodeRole::actor);
+    require_outputs(
+        give_role(scenario, attitude->node, object.attitude->node_where, OwnNodeRole::actor),
+        {"gcrs_from_body"}, "turns");
     const bool both = motion && motion->node == attitude->node;
     attitude->place = both ? motion->place : counts[attitude->node]++;
   }
