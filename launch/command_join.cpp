@@ -37,24 +37,45 @@ constexpr int answers_missed = 6;  // in a row: the time-master is gone
 
 struct JoinOptions {
   std::string scenario, node, out, plan, master, keys, host;
-  int slot = 0;                       // from 1: index of the sensor; 0: any free one
+  int slot = 0;                       // from 1: index of the sensor or own node; 0: any free one
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   std::vector<std::string> more;      // passed to the node's program
   std::string program;                // that an own node runs, instead of the scenario's
   bool allow_programs = false;
 };
 
+/// The kind of which a process is to be any node; null for the name of a node.
+const NodeKind* kind_of_any(const std::string& node) {
+  for (const NodeKind& kind : node_kinds())
+    if ((kind.each_sensor || kind.each_own_node) && node == kind.name) return &kind;
+  return nullptr;
+}
+
+/// Nodes of a kind that a stack starts: all but those that somebody joins with a program.
+std::vector<std::string> started_nodes_of(const NodeKind& kind, const Scenario& scenario) {
+  std::vector<std::string> names = nodes_of(kind, scenario);
+  for (const OwnNode& node : scenario.own_nodes)
+    if (kind.each_own_node && node.run.empty()) std::erase(names, node.name);
+  return names;
+}
+
 /// One node of a run whose time-master was started elsewhere, by `dmise launch --nodes-elsewhere`.
 /// This process is replaced by the node's program, so that its parent sees the node itself.
 class Join {
  public:
   Join(const JoinOptions& options, const Scenario& scenario)
-      : options_(options), scenario_(scenario) {}
+      : options_(options), scenario_(scenario) {
+    const NodeKind* any = kind_of_any(options.node);
+    if (!any) return;
+    candidates_ = started_nodes_of(*any, scenario);
+    const auto names = nodes_of(*any, scenario);
+    asks_as_ = names.empty() ? any->name : names.front();
+  }
 
   /// Returns only if there is nothing (more) to run.
   void run() {
-    if (options_.slot > int(scenario_.sensors.size())) {
-      std::fprintf(stderr, "no sensor %d in %s: nothing to do\n", options_.slot,
+    if (options_.slot > int(candidates_.size())) {
+      std::fprintf(stderr, "no %s %d in %s: nothing to do\n", options_.node.c_str(), options_.slot,
                    options_.scenario.c_str());
       return;
     }
@@ -63,28 +84,26 @@ class Join {
     if (const auto name = fixed_name()) {
       wait_for_master(*name);
       not_needed ? stand_by(*name) : become_node(*name);
-    } else if (take_free_sensor()) {
+    } else if (take_free_node()) {
       wait_for_master(lock_name_);
       become_node(lock_name_);
     } else {
-      wait_for_master(scenario_.sensors.front().name);
-      stand_by(scenario_.sensors.front().name);
+      wait_for_master(asks_as_);
+      stand_by(asks_as_);
       if (!lock_name_.empty()) become_node(lock_name_);
     }
   }
 
  private:
   std::optional<std::string> fixed_name() const {
-    if (options_.node != any_sensor) return options_.node;
-    if (options_.slot > 0) return scenario_.sensors[std::size_t(options_.slot - 1)].name;
+    if (asks_as_.empty()) return options_.node;
+    if (options_.slot > 0) return candidates_[std::size_t(options_.slot - 1)];
     return std::nullopt;
   }
 
-  /// Locks the first free sensor of the scenario.
-  bool take_free_sensor() {
-    const auto& sensors = scenario_.sensors;
-    return std::any_of(sensors.begin(), sensors.end(),
-                       [&](const auto& sensor) { return take(sensor.name); });
+  /// Locks the first free node of the kind.
+  bool take_free_node() {
+    return std::ranges::any_of(candidates_, [&](const auto& name) { return take(name); });
   }
 
   bool take(const std::string& name) {
@@ -95,16 +114,15 @@ class Join {
     return true;
   }
 
-  /// The first sensor that the run waits for. After the end of the run none is wanted.
-  bool take_wanted_sensor(const RunStatus& status) {
+  /// The first candidate that the run waits for. After the end of the run none is wanted.
+  bool take_wanted_node(const RunStatus& status) {
     std::vector<std::string> wanted = status.missing;
     if (scenario_.network.on_silent_node == OnSilentNode::restart)
       for (const auto& node : status.nodes)
         if (!node.alive) wanted.push_back(node.name);
-    for (const auto& sensor : scenario_.sensors)
-      if (std::count(wanted.begin(), wanted.end(), sensor.name) > 0 && take(sensor.name))
-        return true;
-    return false;
+    return std::ranges::any_of(candidates_, [&](const auto& name) {
+      return std::ranges::count(wanted, name) > 0 && take(name);
+    });
   }
 
   Security security_as(const std::string& name) const { return {options_.keys, name}; }
@@ -140,7 +158,7 @@ class Join {
                         ", the run's " + printable(status.scenario_digest, 40) + ")");
   }
 
-  /// Waits until the run is over or a sensor becomes free.
+  /// Waits until the run is over or a candidate becomes free.
   void stand_by(const std::string& name) {
     std::fprintf(stderr, "%s: no node is missing; standing by\n", options_.node.c_str());
     const Security security = security_as(name);
@@ -149,7 +167,7 @@ class Join {
       try {
         const RunStatus status = ask_master(master_, answer_within_s, security);
         if (status.phase == Phase::ended || status.phase == Phase::failed) return;
-        if (options_.node == any_sensor && take_wanted_sensor(status)) return;
+        if (take_wanted_node(status)) return;
         missed = 0;
       } catch (const Error&) {
         ++missed;
@@ -164,9 +182,9 @@ class Join {
     if (stop_.is_set()) throw ExitWith{130};
   }
 
-  bool writes_products(const std::string& name) const {
+  bool writes_files(const std::string& name) const {
     const NodeKind* kind = kind_of_node(name, scenario_);
-    return kind && kind->writes_products;
+    return kind && dmise::writes_files(*kind, name, scenario_);
   }
 
   std::vector<std::string> arguments(const std::string& name) const {
@@ -181,7 +199,7 @@ class Join {
       add({"--publish", host, "--subscribe", host, "--observe", host});
     else
       add({"--host", host, "--config", options_.scenario});
-    if (writes_products(name)) add({"--out", options_.out});
+    if (writes_files(name)) add({"--out", options_.out});
     if (kind && kind->each_sensor)
       add({"--digest", digest_, "--seed", std::to_string(scenario_.seed)});
     if (kind && kind->each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
@@ -213,7 +231,7 @@ class Join {
   }
 
   [[noreturn]] void become_node(const std::string& name) {
-    if (writes_products(name)) enter_directory();
+    if (writes_files(name)) enter_directory();
     const std::vector<std::string> command = arguments(name);
     std::fprintf(stderr, "joining %s as %s\n", master_.c_str(), name.c_str());
     // From here on signals end the process, or belong to the node.
@@ -228,8 +246,10 @@ class Join {
   const JoinOptions& options_;
   const Scenario& scenario_;
   const Event& stop_ = stop_signal();
+  std::vector<std::string> candidates_;  // for `sensor` and `own-node`: it is to be one of these
+  std::string asks_as_;                  // the name of one that stands by for them
   std::optional<FileLock> lock_;
-  std::string lock_name_;  // the sensor locked by this process
+  std::string lock_name_;  // the node locked by this process
   std::string master_;     // numeric address
   std::uint64_t run_id_ = 0;
   const std::string digest_ = scenario_digest(scenario_);
@@ -242,25 +262,25 @@ int slot_of_environment() {
   return text ? parse_integer(trimmed(text)).value_or(0) : 0;
 }
 
-/// For the help text: "broker, ... or sensor".
+/// For the help text: "broker, ... or own-node".
 std::string nodes_to_be() {
   std::string all = broker_name;
   for (const NodeKind& kind : node_kinds())
     if (!kind.each_sensor && !kind.each_own_node) all += std::string(", ") + kind.name;
-  return all + ", the name of a sensor or an own node, or " + any_sensor;
+  return all + ", the name of a sensor or an own node, or " + any_sensor + " or " + any_own_node;
 }
 
 void join(JoinOptions options) {
-  if (options.slot > 0 && options.node != any_sensor)
-    throw ConfigError(std::string("--slot: is for the node `") + any_sensor + "`, got " +
-                      options.node);
+  if (options.slot > 0 && !kind_of_any(options.node))
+    throw ConfigError(std::string("--slot: is for `") + any_sensor + "` and `" + any_own_node +
+                      "`, got " + options.node);
   if (options.slot == 0) options.slot = slot_of_environment();
   if (options.slot < 0)
     throw ConfigError("DMISE_SLOT: must be from 1, got " + std::to_string(options.slot));
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
-  if (options.node != broker_name && options.node != any_sensor &&
+  if (options.node != broker_name && !kind_of_any(options.node) &&
       !kind_of_node(options.node, scenario))
     throw ConfigError(options.node + ": is not a node of " + options.scenario);
   const NodeKind* kind = kind_of_node(options.node, scenario);
@@ -286,8 +306,8 @@ void add_join_command(CLI::App& app) {
       ->default_val("out/launch");
   command
       ->add_option("--slot", options->slot,
-                   "for `sensor`: index in the scenario, from 1 (or DMISE_SLOT); a surplus process "
-                   "exits at once")
+                   "for `sensor` and `own-node`: index in the scenario, from 1 (or DMISE_SLOT); a "
+                   "surplus process exits at once")
       ->check(CLI::Range(1, 1 << 20));
   command->add_option("--keys", options->keys,
                       "directory of keys (dmise keygen); without it loopback only");

@@ -29,8 +29,7 @@ struct KeygenOptions {
 /// Nodes of a kind that may ask the time-master: also one that the scenario does not need, for its
 /// container or task stands by until the end of the run.
 std::vector<std::string> askers_of(const NodeKind& kind, const Scenario& scenario) {
-  if (kind.each_sensor || kind.each_own_node || kind.wanted(scenario))
-    return nodes_of(kind, scenario);
+  if (kind.wanted(scenario)) return nodes_of(kind, scenario);
   return {kind.name};
 }
 
@@ -62,9 +61,12 @@ void keygen(const KeygenOptions& options) {
   if (!options.scenario.empty()) {
     names.insert(names.end(), {"time-master", broker_name});
     const Scenario scenario = load_scenario(options.scenario);
-    for (const NodeKind& kind : node_kinds())
-      for (const auto& name : askers_of(kind, scenario))
-        (kind.writes_products ? several : names).push_back(name);
+    for (const NodeKind& kind : node_kinds()) {
+      const auto askers = askers_of(kind, scenario);
+      auto& list = kind.writes_products ? several : names;
+      list.insert(list.end(), askers.begin(), askers.end());
+      if (kind.each_own_node) rings["own-nodes"] = askers;
+    }
     names.push_back(operator_name);
     names.insert(names.end(), several.begin(), several.end());
     for (int host = 0; host < options.hosts; ++host) {
@@ -99,9 +101,9 @@ void add_keygen_command(CLI::App& app) {
   command->add_option("names", options->names, "names of nodes of a run, observers, operator");
   command->add_option("--scenario", options->scenario, "also for every process of this scenario");
   command->add_flag("--rings", options->rings,
-                    "also rings/sensors.keys, the sensors' keys in one file, "
-                    "rings/everybody.pubs, all public keys, and with --hosts a ring for each "
-                    "agent and its sensors: for containers");
+                    "also rings/sensors.keys, the sensors' keys in one file, rings/own-nodes.keys, "
+                    "those of own nodes, rings/everybody.pubs, all public keys, and with --hosts a "
+                    "ring for each agent and its sensors: for containers");
   command
       ->add_option("--nodes", options->nodes,
                    "the names are agents (dmise-host-agent) that may speak for NODE[,NODE..] only")

@@ -15,7 +15,6 @@
 
 #include "core/base/error.h"
 #include "core/base/paths.h"
-#include "core/base/printable.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "core/sim/controller.h"
@@ -26,9 +25,9 @@
 #include "launch/notes.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
+#include "launch/replayed_nodes.h"
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
-#include "nodes/own/recorded_actor.h"
 #include "nodes/runtime/process/event.h"
 #include "sensors/pipeline/recorded_plans.h"
 #include "sensors/pipeline/sensor_evaluator.h"
@@ -44,8 +43,6 @@ struct RunOptions {
   std::vector<std::string> replayed;  // NODE=FILE
 };
 
-using Participants = std::map<std::string, std::unique_ptr<Participant>>;  // by node
-
 constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 
 /// A run of a scenario in this process. Steps are performed by a separate thread, so that a stop
@@ -53,7 +50,7 @@ constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 class EmbeddedRun {
  public:
   EmbeddedRun(const Scenario& scenario, ScenarioInputs scene, const RunDirectory& directory,
-              int thread_count, Tick first_tick, Participants replayed)
+              int thread_count, Tick first_tick, ReplayedNodes replayed)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
     print_outlook(scenario, scene, make_clock(scenario));
     NodeParts parts{scenario,           scene,    directory.digest(),
@@ -172,32 +169,6 @@ class EmbeddedRun {
   bool finished_ = false;
 };
 
-/// Recordings by the nodes that they replay.
-std::map<std::string, std::string> recordings_of(const std::vector<std::string>& replayed,
-                                                 const Scenario& scenario) {
-  std::map<std::string, std::string> recordings;
-  for (const std::string& one : replayed) {
-    const std::string name = one.substr(0, one.find('='));
-    const auto node = std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
-    if (name == one || node == scenario.own_nodes.end() || node->role != OwnNodeRole::actor)
-      throw ConfigError(
-          "--replay-node: must be NODE=FILE with a node of the scenario that moves or turns "
-          "objects, got " +
-          printable(one));
-    recordings[name] = one.substr(name.size() + 1);
-  }
-  return recordings;
-}
-
-/// Reads the recordings. Throws `ConfigError` for one that is not whole or of another run.
-Participants replayed_nodes(const std::map<std::string, std::string>& recordings,
-                            const Scenario& scenario, const std::string& digest) {
-  Participants nodes;
-  for (const auto& [node, path] : recordings)
-    nodes[node] = std::make_unique<RecordedActor>(scenario, node, digest, path);
-  return nodes;
-}
-
 /// The nodes whose programs take part.
 std::vector<OwnNode> nodes_without(const std::map<std::string, std::string>& recordings,
                                    const Scenario& scenario) {
@@ -224,7 +195,7 @@ void run(const RunOptions& options) {
   scenario.network.publish_states = false;  // nobody outside this process can take them
   ScenarioInputs scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
-  Participants replayed = replayed_nodes(recordings, scenario, directory.digest());
+  ReplayedNodes replayed = replayed_nodes(recordings, scenario, directory.digest());
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();

@@ -164,7 +164,7 @@ class Launch {
           add({"--via", agent_name(scenario_, host)});
         }
         add({"--name", nodes[i]});
-        if (kind.writes_products) add({"--out", directory_.path()});
+        if (writes_files(kind, nodes[i], scenario_)) add({"--out", directory_.path()});
         if (starts_program(kind, nodes[i], scenario_)) add({"--allow-programs"});
         if (kind.each_sensor)
           add({"--digest", directory_.digest(), "--seed", std::to_string(scenario_.seed)});

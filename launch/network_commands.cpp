@@ -4,6 +4,9 @@
 
 namespace dmise {
 
+static constexpr const char* no_fusion =
+    "this part of the program has no fusion: ./dmise build makes the whole";
+
 // The program that the demonstration builds first, as a part of the whole one.
 void add_commands(CLI::App& app) {
   for (const auto add_command :
@@ -15,8 +18,13 @@ void add_commands(CLI::App& app) {
 }
 
 std::unique_ptr<Participant> make_fusion(const Scenario&, const Clock&, const std::string&,
-                                         const OwnNodeSettings&) {
-  throw Error("this part of the program has no fusion: ./dmise build makes the whole");
+                                         const OwnNodeSettings&, std::shared_ptr<Tracker>) {
+  throw Error(no_fusion);
+}
+
+std::shared_ptr<Tracker> make_recorded_tracker(const Scenario&, const std::string&,
+                                               const std::string&) {
+  throw Error(no_fusion);
 }
 
 }  // namespace dmise

@@ -8,7 +8,7 @@
 #include "core/config/node_kinds.h"
 #include "launch/make_fusion.h"
 #include "nodes/environment/environment_actor.h"
-#include "nodes/fusion/fusion_journal.h"
+#include "nodes/own/input_journal.h"
 #include "nodes/own/own_actor.h"
 #include "nodes/own/own_detector.h"
 #include "nodes/runtime/process/event.h"
@@ -35,20 +35,22 @@ std::unique_ptr<Participant> make_environment(const std::string&, NodeParts& par
 std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& parts) {
   const auto& nodes = parts.scenario.own_nodes;
   const OwnNode& node = *std::ranges::find(nodes, name, &OwnNode::name);
-  if (const auto found = parts.replayed.find(name); found != parts.replayed.end())
-    return std::move(found->second);
+  auto& actors = parts.replayed.actors;
+  if (const auto found = actors.find(name); found != actors.end()) return std::move(found->second);
   return std::make_unique<OwnActor>(
       parts.scenario, node, make_clock(parts.scenario),
       OwnNodeSettings{.log_path = parts.directory + "/logs/" + name + ".log",
+                      .journal_path = input_journal_path(parts.directory, name),
                       .error_prefix = name + ": ",
                       .note = parts.note,
                       .stop = &stop_signal()});
 }
 
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
-  SourceFinder finder =
-      own_finder(parts.scenario, node, parts.directory,
-                 {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
+  SourceFinder finder = std::move(parts.replayed.finders[node]);
+  if (!finder)
+    finder = own_finder(parts.scenario, node, parts.directory,
+                        {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
                      parts.threads, std::move(finder));
 }
@@ -60,7 +62,8 @@ std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts
 
 std::unique_ptr<Participant> make_fusion_node(const std::string& name, NodeParts& parts) {
   return make_fusion(parts.scenario, make_clock(parts.scenario), parts.directory,
-                     {.error_prefix = name + ": ", .note = parts.note, .stop = &stop_signal()});
+                     {.error_prefix = name + ": ", .note = parts.note, .stop = &stop_signal()},
+                     std::move(parts.replayed.tracker));
 }
 
 std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {
@@ -86,19 +89,26 @@ std::optional<Tick> unfinished_positions(const std::string&, const Scenario&,
   return std::max<Tick>(0, last_tick_written(directory));
 }
 
-std::optional<Tick> unfinished_tracks(const std::string&, const Scenario& scenario,
-                                      const std::string& directory) {
-  const Tick next = FusionJournal::ticks_written(fusion_journal_path(directory));
+/// The first tick that is not in the journal of a node.
+std::optional<Tick> unfinished_journal(const std::string& node, const Scenario& scenario,
+                                       const std::string& directory) {
+  const Tick next = InputJournal::ticks_written(input_journal_path(directory, node));
   return next > scenario.last_tick() ? std::nullopt : std::optional(next);
+}
+
+std::optional<Tick> unfinished_own_node(const std::string& node, const Scenario& scenario,
+                                        const std::string& directory) {
+  const bool has_journal = writes_files(*kind_of_node(node, scenario), node, scenario);
+  return has_journal ? unfinished_journal(node, scenario, directory) : std::nullopt;
 }
 
 constexpr NodeMaker makers[] = {
     {orbit_node, make_orbit, no_products},
     {environment_node, make_environment, no_products},
-    {any_own_node, make_own_node, no_products},
+    {any_own_node, make_own_node, unfinished_own_node},
     {any_sensor, make_one_sensor, unfinished_frame},
     {positions_node, make_positions, unfinished_positions},
-    {fusion_node, make_fusion_node, unfinished_tracks},
+    {fusion_node, make_fusion_node, unfinished_journal},
 };
 
 }  // namespace

@@ -1,12 +1,12 @@
 #pragma once
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "core/config/node_kinds.h"
 #include "core/sim/participant.h"
+#include "launch/replayed_nodes.h"
 #include "launch/run_directory.h"
 #include "launch/scenario_outlook.h"
 
@@ -18,8 +18,8 @@ struct NodeParts {
   ScenarioInputs& scene;  // parts with a single user are moved out
   std::string digest, directory;
   Threads& threads;
-  std::function<void(const std::string&)> note;                       // prints a line
-  std::map<std::string, std::unique_ptr<Participant>> replayed = {};  // own nodes; moved out
+  std::function<void(const std::string&)> note;  // prints a line
+  ReplayedNodes replayed = {};                   // moved out
 };
 
 /// Properties of a kind of node for `dmise run`, in addition to its row in

@@ -54,6 +54,13 @@ bool is_product_of_sensor(const std::string& file) {
          std::ranges::find(endings, name.substr(end)) != std::end(endings);
 }
 
+std::vector<std::string> nodes_with_journals(const Scenario& scenario) {
+  std::vector<std::string> nodes{fusion_node};
+  for (const auto& node : scenario.own_nodes)
+    if (!node.consumes.empty()) nodes.push_back(node.name);
+  return nodes;
+}
+
 /// NAME-NUMBER.oem.
 bool is_ephemeris(const std::string& name) {
   constexpr std::string_view ending = ".oem";
@@ -130,7 +137,7 @@ std::string RunDirectory::in_the_way() const {
   std::error_code ignored;
   for (const char* name : run_files)
     if (fs::exists(fs::symlink_status(file(name), ignored))) return file(name);
-  std::vector<std::string> directories{fusion_node};
+  std::vector<std::string> directories = nodes_with_journals(scenario_);
   for (const auto& sensor : scenario_.sensors) directories.push_back(sensor.name);
   if (scenario_.output.positions_oem) directories.push_back("positions");
   for (const auto& name : directories) {
@@ -164,9 +171,10 @@ void RunDirectory::clear(bool others) {
         sensors.push_back(entry.path());
   for (const auto& sensor : scenario_.sensors) sensors.emplace_back(file(sensor.name));
   for (const auto& sensor : sensors) remove_products(sensor, is_product_of_sensor);
-  remove_products(file(fusion_node), [](const std::string& name) {
-    return name == "inputs.journal" || name == "tracks.jsonl" || name == "tasks.jsonl";
-  });
+  for (const auto& node : nodes_with_journals(scenario_))
+    remove_products(file(node), [](const std::string& name) {
+      return name == "inputs.journal" || name == "tracks.jsonl" || name == "tasks.jsonl";
+    });
   if (others || scenario_.output.positions_oem) remove_products(file("positions"), is_ephemeris);
 }
 

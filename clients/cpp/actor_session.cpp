@@ -49,6 +49,15 @@ v1::OwnNodeRequest request_in(std::string_view frame) {
   return request;
 }
 
+std::vector<Message> heard_in(const v1::OwnNodeStep& step) {
+  std::vector<Message> messages;
+  for (const v1::OwnNodeHeard& one : step.heard())
+    messages.push_back(
+        {one.topic(), one.tick(),
+         std::make_shared<State>(decode(MessageKind(one.kind()), one.payload(), one.arrays()))});
+  return messages;
+}
+
 }  // namespace
 
 std::optional<std::vector<std::string>> ActorSession::answer(
@@ -78,7 +87,11 @@ std::vector<std::string> ActorSession::begin(const v1::OwnNodeBegin& begin) {
 
 std::vector<std::string> ActorSession::step(const v1::OwnNodeStep& step,
                                             std::string_view environment) {
-  ActorWorld world{.task = task_, .tick = step.tick(), .time = {step.time_ns()}, .environment = {}};
+  ActorWorld world{.task = task_,
+                   .tick = step.tick(),
+                   .time = {step.time_ns()},
+                   .environment = {},
+                   .heard = heard_in(step)};
   world.environment =
       std::get<EnvironmentState>(decode(MessageKind::environment_state, environment, {}));
   if (world.environment.tick != world.tick)

@@ -13,6 +13,7 @@
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
 #include "core/orbit/attitude_interpolation.h"
+#include "core/sim/message.h"
 #include "core/sim/state.h"
 
 // Models of one's own in a run, in C++ (docs/howto/plug-in-a-model.md):
@@ -57,6 +58,7 @@ struct ActorWorld {
   Tick tick = 0;
   SimTime time;                  // since the scenario's start
   EnvironmentState environment;  // Sun, Moon and Earth at the tick
+  std::vector<Message> heard;    // on the topics that the node consumes, since the last tick
 };
 
 /// A model of the user's, whatever its type.

@@ -83,6 +83,13 @@ bool starts_program(const NodeKind& kind, const std::string& name, const Scenari
   return kind.each_own_node || (kind.each_sensor && sensor_named(scenario, name).detector);
 }
 
+bool writes_files(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
+  return kind.writes_products ||
+         (kind.each_own_node && std::ranges::any_of(scenario.own_nodes, [&](const OwnNode& node) {
+            return node.name == name && !node.consumes.empty();
+          }));
+}
+
 std::vector<std::string> nodes_of(const Scenario& scenario) {
   std::vector<std::string> all;
   for (const NodeKind& kind : table)

@@ -31,6 +31,9 @@ const NodeKind* kind_of_node(const std::string& name, const Scenario& scenario);
 std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario);
 /// Names of all nodes that the scenario needs.
 std::vector<std::string> nodes_of(const Scenario& scenario);
+/// Whether the process of such a node writes into the directory of the run: products, or a journal
+/// of what it hears.
+bool writes_files(const NodeKind& kind, const std::string& name, const Scenario& scenario);
 /// Whether the process of such a node starts a program of the user's.
 bool starts_program(const NodeKind& kind, const std::string& name, const Scenario& scenario);
 

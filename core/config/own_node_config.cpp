@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Tick longest_period_ticks = 100'000;
+constexpr Tick longest_period_ticks = 100'000, longest_delay_ticks = 100'000;
 
 Forms option_forms() { return Forms{{.kind = Form::Kind::number}} | form::flag() | form::text(); }
 
@@ -91,6 +91,12 @@ const Section& own_node_section() {
                 "Ticks between those for which the program is asked for states. Cubics join the "
                 "others.",
                 "1"),
+       optional("consumes", form::list(form::text(), 1),
+                "Topics that a node which moves or turns objects hears: `detection/SENSOR`, "
+                "`frame/SENSOR`, `track/fusion-node`, `task/SENSOR` and, with states as they are, "
+                "`state/actor/NODE`; `detection/*` is all that begin so."),
+       optional("delay_ticks", form::integer(1, longest_delay_ticks),
+                "Ticks after which it hears what is published on these topics.", "1"),
        optional(
            "options", form::map(options_section),
            "What the program is told as it begins; of an FMU the numbers with which its parameters "
@@ -171,7 +177,8 @@ void write_inputs(JsonWriter& json, const YamlValue& value) {
   map.done();
 }
 
-void write_outputs(JsonWriter& json, const YamlValue& value) {
+void write_outputs(JsonWriter& json, const YamlValue& value, OwnNode& node) {
+  node.fmu_outputs_where = value.place();
   YamlMap map(value, fmu_outputs_section());
   for (const auto& [key, count] :
        {std::pair("position_m", 3u), std::pair("velocity_m_per_s", 3u),
@@ -183,19 +190,35 @@ void write_outputs(JsonWriter& json, const YamlValue& value) {
     if (variables.size() != count)
       names->fail("must be " + std::to_string(count) + " names of variables", false);
     json.list(key, variables);
+    node.fmu_outputs.push_back(key);
   }
   map.done();
 }
 
 /// What `dmise.fmi` is told: the tables of the node, and its options.
-std::string fmu_json(YamlMap& map, const std::string& options) {
+std::string fmu_json(YamlMap& map, OwnNode& node) {
   JsonWriter json;
   json.begin_object().key("inputs").begin_object();
   if (const auto inputs = map.find("inputs")) write_inputs(json, *inputs);
   json.end_object().key("outputs").begin_object();
-  write_outputs(json, map.require("outputs"));
-  json.end_object().key("options").raw(options);
+  write_outputs(json, map.require("outputs"), node);
+  json.end_object().key("options").raw(node.options_json);
   return json.end_object().take();
+}
+
+void read_consumes(YamlMap& map, OwnNode& node) {
+  const auto consumes = map.find("consumes");
+  const auto delay = map.find("delay_ticks");
+  node.delay_ticks = map.integer_or("delay_ticks", 1);
+  if (!consumes) {
+    if (delay) delay->fail("is of topics that the node consumes", false);
+    return;
+  }
+  if (node.is_fmu) consumes->fail("an FMU hears no topics", false);
+  if (node.period_ticks != 1)
+    consumes->fail("needs period_ticks: 1, for it hears topics at each tick", false);
+  for (const YamlValue& topic : consumes->list())
+    node.hears.push_back({topic.text(), topic.place()});
 }
 
 OwnNode read_own_node(const YamlValue& value) {
@@ -208,8 +231,9 @@ OwnNode read_own_node(const YamlValue& value) {
   const bool elsewhere = map.flag_or("elsewhere", false);
   node.period_ticks = map.integer_or("period_ticks", 1);
   if (const auto options = map.find("options")) node.options_json = read_options(*options);
-  if (fmu) node.options_json = fmu_json(map, node.options_json);
+  if (fmu) node.options_json = fmu_json(map, node);
   node.is_fmu = bool(fmu);
+  read_consumes(map, node);
   map.done();
   if (int(bool(run)) + int(bool(fmu)) + int(elsewhere) != 1)
     value.fail("give either run or fmu or elsewhere: on", false);
@@ -236,6 +260,8 @@ void write_own_nodes(JsonWriter& json, const std::vector<OwnNode>& nodes) {
   for (const OwnNode& node : nodes) {
     json.begin_object().field("name", node.name).list("run", node.run);
     json.field("period_ticks", node.period_ticks).key("options").raw(node.options_json);
+    if (!node.consumes.empty())
+      json.list("consumes", node.consumes).field("delay_ticks", node.delay_ticks);
     json.end_object();
   }
   json.end_array();

@@ -14,6 +14,12 @@ class JsonWriter;
 /// or of the fusion node.
 enum class OwnNodeRole { none, actor, detector, tracker };
 
+/// Topics that a node hears: `detection/alpha`, or `detection/*` of all sensors.
+struct HeardTopics {
+  std::string pattern;
+  std::string where;  // `file:line:column: nodes[0].consumes[0]`
+};
+
 /// A program of the user's: `{name: gnc, run: [python3, gnc.py]}`.
 struct OwnNode {
   std::string name;
@@ -23,7 +29,12 @@ struct OwnNode {
   std::string directory;         // in which it runs: that of the scenario
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
-  bool is_fmu = false;  // which moves or turns one object
+  bool is_fmu = false;                   // which moves or turns one object
+  std::vector<std::string> fmu_outputs;  // that its table has: "position_m"
+  std::string fmu_outputs_where;         // `file:line:column: nodes[0].outputs`
+  std::vector<HeardTopics> hears;
+  std::vector<std::string> consumes;  // the topics of the scenario that these are, sorted
+  Tick delay_ticks = 1;               // after which it hears them
   OwnNodeRole role = OwnNodeRole::none;
 };
 

@@ -1,7 +1,10 @@
 #include "core/config/scenario.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "core/base/error.h"
@@ -11,6 +14,7 @@
 #include "core/config/effects_config.h"
 #include "core/config/fusion_config.h"
 #include "core/config/interpolation_choice.h"
+#include "core/config/node_kinds.h"
 #include "core/config/node_names.h"
 #include "core/config/output_config.h"
 #include "core/config/schema.h"
@@ -249,6 +253,53 @@ void give_inner_role(Scenario& scenario, const std::string& name, const std::str
                       std::to_string(node.period_ticks));
 }
 
+/// Topics of the run that a node of the user's may hear.
+std::vector<std::string> topics_to_hear(const Scenario& scenario, const OwnNode& node) {
+  std::vector<std::string> topics;
+  for (const SensorConfig& sensor : scenario.sensors) {
+    topics.push_back("frame/" + sensor.name);
+    if (sensor.detect) topics.push_back("detection/" + sensor.name);
+    if (std::holds_alternative<PointCued>(sensor.pointing)) topics.push_back("task/" + sensor.name);
+  }
+  if (scenario.fusion) topics.push_back(std::string("track/") + fusion_node);
+  for (const OwnNode& other : scenario.own_nodes)
+    if (other.role == OwnNodeRole::actor && other.name != node.name)
+      topics.push_back("state/actor/" + other.name);
+  return topics;
+}
+
+bool is_heard(const std::string& pattern, const std::string& topic) {
+  return pattern.ends_with("/*") ? topic.starts_with(pattern.substr(0, pattern.size() - 1))
+                                 : topic == pattern;
+}
+
+/// Finds the topics that a node of the user's consumes. Throws `ConfigError` for one that nobody
+/// publishes.
+void find_topics(const Scenario& scenario, OwnNode& node) {
+  if (!node.hears.empty() && node.role != OwnNodeRole::actor)
+    throw ConfigError(node.hears.front().where + ": only a node that moves or turns objects " +
+                      "consumes topics");
+  const std::vector<std::string> topics = topics_to_hear(scenario, node);
+  std::set<std::string> found;
+  for (const HeardTopics& hears : node.hears) {
+    const auto is_of = [&](const std::string& topic) { return is_heard(hears.pattern, topic); };
+    if (std::ranges::none_of(topics, is_of))
+      throw ConfigError(hears.where + ": nobody publishes it" +
+                        did_you_mean(hears.pattern, topics) + ", got " + printable(hears.pattern));
+    std::ranges::copy_if(topics, std::inserter(found, found.end()), is_of);
+  }
+  node.consumes.assign(found.begin(), found.end());
+}
+
+/// Throws `ConfigError` for an FMU that does not say what an object needs of it.
+void require_outputs(const OwnNode& node, std::initializer_list<const char*> outputs,
+                     const char* does) {
+  for (const char* output : outputs)
+    if (node.is_fmu && std::ranges::count(node.fmu_outputs, output) == 0)
+      throw ConfigError(node.fmu_outputs_where + ": lacks " + output + ", which an FMU that " +
+                        does + " an object must say");
+}
+
 /// Gives each object that a node moves or turns its place among those of the node, and each node
 /// its role.
 void assign_own_nodes(Scenario& scenario) {
@@ -258,11 +309,15 @@ void assign_own_nodes(Scenario& scenario) {
     auto* motion = model ? std::get_if<NodeMotion>(model) : nullptr;
     auto* attitude = object.attitude ? std::get_if<NodeAttitude>(&object.attitude->model) : nullptr;
     if (motion) {
-      give_role(scenario, motion->node, object.motion.node_where, OwnNodeRole::actor);
+      require_outputs(
+          give_role(scenario, motion->node, object.motion.node_where, OwnNodeRole::actor),
+          {"position_m", "velocity_m_per_s"}, "moves");
       motion->place = counts[motion->node]++;
     }
     if (!attitude) continue;
-    give_role(scenario, attitude->node, object.attitude->node_where, OwnNodeRole::actor);
+    require_outputs(
+        give_role(scenario, attitude->node, object.attitude->node_where, OwnNodeRole::actor),
+        {"gcrs_from_body"}, "turns");
     const bool both = motion && motion->node == attitude->node;
     attitude->place = both ? motion->place : counts[attitude->node]++;
   }
@@ -282,6 +337,7 @@ void assign_own_nodes(Scenario& scenario) {
                         "}), no sensor detects by it (detection: {node: " + node.name +
                         "}), and it makes no tracks (fusion: {node: " + node.name + "})");
   }
+  for (OwnNode& node : scenario.own_nodes) find_topics(scenario, node);
 }
 
 }  // namespace

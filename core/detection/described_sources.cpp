@@ -46,24 +46,33 @@ bool is_at_edge(const MeasuredSource& source, const CountImage& counts, double w
   });
 }
 
-}  // namespace
-
-DetectionResult described(std::vector<MeasuredSource> sources, const CountImage& counts,
-                          const FrameHeader& header, Threads& threads) {
+/// Adds the detections that are made of sources, by falling SNR.
+void describe_all(std::vector<MeasuredSource>& sources, const CountImage& counts,
+                  const FrameHeader& header, std::vector<Detection>& detections) {
   std::stable_sort(sources.begin(), sources.end(),
                    [](const MeasuredSource& a, const MeasuredSource& b) {
                      const PixelPosition &p = a.centroid.place, &q = b.centroid.place;
                      return std::tuple(-a.snr, p.y_px, p.x_px) < std::tuple(-b.snr, q.y_px, q.x_px);
                    });
-  const Background background(counts, detection_limits::background_cell_px, threads);
-  DetectionResult result;
-  result.report = make_report(counts, header, background, PsfField::gaussian(header.psf_fwhm_px));
   for (const MeasuredSource& source : sources)
     if (sees_sky(source, header.wcs))
       add_detection(
           describe(source, header, has_clipped_pixel(source, counts, lowest_clipped_dn(header)),
                    is_at_edge(source, counts, header.psf_fwhm_px)),
-          header, result.detections);
+          header, detections);
+}
+
+}  // namespace
+
+DetectionResult described(FoundInFrame found, const CountImage& counts, const FrameHeader& header,
+                          Threads& threads) {
+  DetectionResult result;
+  const Background background(counts, detection_limits::background_cell_px, threads);
+  result.report = make_report(counts, header, background, PsfField::gaussian(header.psf_fwhm_px));
+  if (auto* detections = std::get_if<std::vector<Detection>>(&found))
+    result.detections = std::move(*detections);
+  else
+    describe_all(std::get<std::vector<MeasuredSource>>(found), counts, header, result.detections);
   result.report.detections = std::uint32_t(result.detections.size());
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -9,17 +10,19 @@
 
 namespace dmise {
 
-/// Finds the sources of a frame in place of our detector, such that `check_sources` accepts them;
-/// nothing: the run is being stopped.
-using SourceFinder = std::function<std::optional<std::vector<MeasuredSource>>(const CountImage&,
-                                                                              const FrameHeader&)>;
+/// Sources, such that `check_sources` accepts them, or detections as they were made of some before.
+using FoundInFrame = std::variant<std::vector<MeasuredSource>, std::vector<Detection>>;
+
+/// Finds what is in a frame in place of our detector; nothing: the run is being stopped.
+using SourceFinder =
+    std::function<std::optional<FoundInFrame>(const CountImage&, const FrameHeader&)>;
 
 /// Detections of what another detector found in a frame, by falling SNR, and the report of the
 /// frame: background and noise as `detect` measures them first, the PSF of the header, no stars.
 /// Sources where the lens images no sky are left out. A pixel that is clipped at a centroid, or
 /// between the ends of a streak, marks it as saturated; a place nearer to the frame's edge than the
 /// width of the PSF as at the edge.
-DetectionResult described(std::vector<MeasuredSource> sources, const CountImage& counts,
-                          const FrameHeader& header, Threads& threads);
+DetectionResult described(FoundInFrame found, const CountImage& counts, const FrameHeader& header,
+                          Threads& threads);
 
 }  // namespace dmise

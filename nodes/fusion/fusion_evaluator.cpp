@@ -60,7 +60,7 @@ FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
       clock_(std::move(clock)),
       directory_(directory),
       settings_(std::move(settings)),
-      journal_(fusion_journal_path(directory)) {
+      journal_(input_journal_path(directory, fusion_node)) {
   std::vector<CuedSensor> cued;
   for (const SensorConfig& sensor : scenario.sensors)
     if (auto one = cued_sensor(sensor)) {
@@ -114,20 +114,24 @@ void FusionEvaluator::start_with(const ObjectRoster& roster) {
 std::optional<FusionEvaluator::Found> FusionEvaluator::fuse(Tick tick,
                                                             std::span<const Message> inputs) {
   for (const Message& message : inputs)
-    if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
+    if (const auto* roster = std::get_if<ObjectRoster>(message.state.get())) {
+      knows_roster_ = true;
       if (!tracker_) start_with(*roster);
+    }
   if (!tracker_) throw Error("no roster came before tick " + std::to_string(tick));
   auto tracked = tracker_->step(tick, searched_frames(inputs));
   ++progress_;
   if (!tracked) return std::nullopt;
   FusionTick& found = tracked->tracks;
+  if (!tracked->tasks)
+    tracked->tasks = tasks_of(tick, tracked->wishes ? &*tracked->wishes : nullptr);
   return Found{.tracks = {.tick = tick,
                           .time = scenario_.time_of(tick),
                           .node = fusion_node,
                           .live = found.live,
                           .unassociated = found.unassociated,
                           .tracks = std::move(found.tracks)},
-               .tasks = tasks_of(tick, tracked->wishes ? &*tracked->wishes : nullptr)};
+               .tasks = std::move(*tracked->tasks)};
 }
 
 std::vector<Task> FusionEvaluator::tasks_of(Tick tick, std::vector<CueWish>* wishes) {
@@ -182,7 +186,7 @@ std::vector<Message> FusionEvaluator::step(Tick tick, std::span<const Message> i
   // A process that continues a run receives the roster again; the journal has it already.
   std::vector<Message> fresh;
   for (const Message& message : inputs)
-    if (!tracker_ || !std::holds_alternative<ObjectRoster>(*message.state))
+    if (!knows_roster_ || !std::holds_alternative<ObjectRoster>(*message.state))
       fresh.push_back(message);
   journal_.add(fresh);
   auto fused = fuse(tick, fresh);

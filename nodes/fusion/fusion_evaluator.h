@@ -12,9 +12,9 @@
 #include "core/fusion/scheduler.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
-#include "nodes/fusion/fusion_journal.h"
 #include "nodes/fusion/line_file.h"
 #include "nodes/fusion/tracker.h"
+#include "nodes/own/input_journal.h"
 #include "nodes/own/own_node_run.h"
 
 namespace dmise {
@@ -32,6 +32,9 @@ class FusionEvaluator : public Evaluator {
   /// of the program that makes the tracks, if the scenario names one.
   FusionEvaluator(const Scenario& scenario, Clock clock, const std::string& directory,
                   OwnNodeSettings settings = {});
+
+  /// Takes what was said in a recorded run for what the scenario's tracker says; before a step.
+  void replay(std::shared_ptr<Tracker> recorded) { tracker_ = std::move(recorded); }
 
   std::string name() const override { return fusion_node; }
   std::vector<std::string> produces() const override;
@@ -63,8 +66,9 @@ class FusionEvaluator : public Evaluator {
   Clock clock_;
   std::string directory_;
   OwnNodeSettings settings_;
-  std::unique_ptr<Tracker> tracker_;  // once the roster is known
-  FusionJournal journal_;
+  std::shared_ptr<Tracker> tracker_;  // once the roster is known
+  bool knows_roster_ = false;
+  InputJournal journal_;
   std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
   std::set<std::pair<std::string, std::string_view>> noted_;  // sensors and obstacles

@@ -24,6 +24,7 @@ class Tracker {
     FusionTick tracks;
     /// What sensors that are cued are to observe. None: a scheduler chooses among the targets.
     std::optional<std::vector<CueWish>> wishes = {};
+    std::optional<std::vector<Task>> tasks = {};  // that were given in a recorded run, instead
   };
   /// Performs the work of a tick; nothing after the stop. `frames`: by sensor and number.
   virtual std::optional<Tracked> step(Tick tick, std::span<const SearchedFrame> frames) = 0;

@@ -38,7 +38,7 @@ dmise::OwnNode node_named(const dmise::Scenario& scenario, const std::string& na
 
 int main(int argc, char** argv) {
   dmise::CommonFlags flags;
-  std::string config;
+  std::string config, directory;
   std::vector<std::string> command;
   bool allowed = false;
   int threads = 1;
@@ -46,14 +46,19 @@ int main(int argc, char** argv) {
                "dmise-own-node");
   dmise::add_common_flags(app, flags);
   app.add_option("--config", config, "scenario (YAML)")->required();
+  app.add_option("--out", directory,
+                 "directory of the run, for the journal of a node that consumes topics");
   app.add_option("--threads", threads, "accepted for compatibility; one thread is used");
   app.add_flag("--allow-programs", allowed, "runs the program that the scenario names");
   app.add_option("program", command, "after --: program and arguments, instead of the scenario's");
   return dmise::run_program(app, flags, argc, argv, [&] {
     const dmise::Scenario scenario = dmise::load_scenario(config);
     const dmise::OwnNode node = node_named(scenario, flags.name, command, allowed);
+    if (!node.consumes.empty() && directory.empty())
+      throw dmise::ConfigError("--out: is required of a node that consumes topics");
     dmise::OwnActor actor(scenario, node, dmise::make_clock(scenario),
                           {.log_path = "",
+                           .journal_path = dmise::input_journal_path(directory, node.name),
                            .error_prefix = "",
                            .note = [](const std::string& line) { spdlog::warn("{}", line); },
                            .stop = &dmise::stop_signal()});

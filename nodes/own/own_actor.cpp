@@ -6,6 +6,7 @@
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/interpolation_error.h"
 #include "nodes/own/joined_states.h"
+#include "nodes/wire/state_codec.h"
 
 namespace dmise {
 namespace {
@@ -26,9 +27,9 @@ bool is_moved_by(const OwnNode& node, const OwnObject& object) {
 }
 
 /// Number of calls that the program may be asked for before it has answered. A run that keeps time
-/// asks for each when it is due.
-Tick calls_ahead(const Scenario& scenario, std::size_t objects) {
-  if (scenario.network.real_time > 0.0) return 0;
+/// asks for each when it is due, and so does a node that hears what others say.
+Tick calls_ahead(const Scenario& scenario, const OwnNode& node, std::size_t objects) {
+  if (scenario.network.real_time > 0.0 || !node.consumes.empty()) return 0;
   return std::clamp<Tick>(Tick(states_ahead / std::max<std::size_t>(objects, 1)), 1, max_ahead);
 }
 
@@ -54,13 +55,32 @@ OwnActor::OwnActor(const Scenario& scenario, const OwnNode& node, Clock clock,
     if (turned) turned_.push_back(std::uint32_t(objects_.size()));
     objects_.push_back(&object);
   }
+  if (!node_.consumes.empty()) journal_.emplace(settings_.journal_path);
   warned_.resize(objects_.size());
   underground_.resize(objects_.size());
 }
 
 std::vector<std::string> OwnActor::produces() const { return {actor_prefix + node_.name}; }
 
-std::vector<Message> OwnActor::step(Tick tick, std::span<const Message>) {
+std::vector<Message> OwnActor::resume(Tick, std::span<const Message>) {
+  if (journal_) kept_ = journal_->resume();
+  return {};
+}
+
+/// Keeps what the program hears at a tick, but for what the journal has already.
+void OwnActor::keep(Tick tick, std::span<const Message> inputs) {
+  if (tick == 0 && kept_ == 0) journal_->clear();
+  if (tick < kept_) return;
+  std::vector<Message> heard;
+  for (const Message& message : inputs)
+    if (message.tick == tick - node_.delay_ticks) heard.push_back(message);
+  journal_->add(heard);
+  journal_->end(tick);
+  kept_ = tick + 1;
+}
+
+std::vector<Message> OwnActor::step(Tick tick, std::span<const Message> inputs) {
+  if (journal_) keep(tick, inputs);
   const Tick call = tick / node_.period_ticks;
   const bool between = tick % node_.period_ticks != 0;
   if (!hear_up_to(between ? call + 1 : call)) return {};
@@ -113,9 +133,11 @@ bool OwnActor::hear() {
 bool OwnActor::ask() {
   if (asked_.empty()) {
     asked_.push_back(environment_of(said_.next()));
-    if (!program_->ask(step_of(said_.next()), asked_.back())) return false;
+    v1::OwnNodeStep step = step_of(said_.next());
+    if (heard_) add_heard(step);
+    if (!program_->ask(step, asked_.back())) return false;
   }
-  const Tick ahead = calls_ahead(scenario_, objects_.size());
+  const Tick ahead = calls_ahead(scenario_, node_, objects_.size());
   if (Tick(asked_.size()) > ahead / 2) return true;  // the next ones go together
   const Tick last = (scenario_.last_tick() + node_.period_ticks - 1) / node_.period_ticks;
   for (Tick call = said_.next() + Tick(asked_.size()); call <= std::min(said_.next() + ahead, last);
@@ -133,6 +155,21 @@ v1::OwnNodeStep OwnActor::step_of(Tick call) const {
   step.set_time_ns(scenario_.time_of(tick_of(call)).ns);
   step.set_give_checkpoint(OwnRecord::wants_checkpoint(call));
   return step;
+}
+
+void OwnActor::add_heard(v1::OwnNodeStep& step) {
+  std::vector<Message> messages;
+  if (!heard_->next(&messages))
+    throw Error(journal_->path() + ": ends before tick " + std::to_string(step.tick()));
+  for (const Message& message : messages) {
+    Encoded encoded = encode(*message.state);
+    v1::OwnNodeHeard& one = *step.add_heard();
+    one.set_topic(message.topic);
+    one.set_kind(v1::Kind(encoded.kind));
+    one.set_tick(message.tick);
+    one.set_payload(std::move(encoded.payload));
+    one.set_arrays(std::move(encoded.arrays));
+  }
 }
 
 EnvironmentState OwnActor::environment_of(Tick call) {
@@ -155,6 +192,11 @@ void OwnActor::start() {
   asked_.clear();
   v1::OwnNodeBegin told = begin();
   said_.continue_at(told);
+  if (journal_) {
+    heard_.emplace(journal_->path());
+    while (heard_->tick() < said_.next() && heard_->next(nullptr)) {
+    }
+  }
   program_.emplace(program_settings(scenario_, node_, settings_), std::move(told), restarts_.any());
 }
 

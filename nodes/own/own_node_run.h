@@ -12,8 +12,9 @@ namespace dmise {
 
 /// How the program of a node is run, whatever it is for.
 struct OwnNodeSettings {
-  std::string log_path;      // of the program's output; empty: stderr of this process
-  std::string error_prefix;  // of errors; empty where the run names the node
+  std::string log_path;           // of the program's output; empty: stderr of this process
+  std::string journal_path = {};  // of what an actor hears, if it consumes topics
+  std::string error_prefix;       // of errors; empty where the run names the node
   std::function<void(const std::string&)> note = [](const std::string&) {};  // hears lines
   const Event* stop = nullptr;
 };

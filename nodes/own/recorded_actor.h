@@ -2,7 +2,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/config/scenario.h"
@@ -24,8 +23,8 @@ class RecordedActor : public Actor {
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
 
  private:
-  /// Adds the states of a recorded message that are due.
-  void add(std::string_view record, const Scenario& scenario);
+  /// Adds recorded states that are due.
+  void add(std::shared_ptr<const State> state, const Scenario& scenario);
 
   std::string node_, topic_;
   std::vector<std::shared_ptr<const State>> states_;  // by tick

@@ -12,6 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/system"), str(ROOT / "build/python")]
 os.environ["PYTHONPATH"] = str(ROOT / "build/python")
 from harness import PATIENCE_S, Run, check, check_same, main, wait_until  # noqa: E402
+import own_tracker  # noqa: E402
 from own_actor import dmise, program, write  # noqa: E402
 
 try:
@@ -26,15 +27,14 @@ import dmise as client  # noqa: E402
 NODE = program("walk", sleep_s=0.02) + ", period_ticks: 4"
 
 
-def recorded(binary, directory, scenario):
-    out, path = directory / "recorded", directory / "run.mcap"
+def recorded(binary, scenario, out, path):
     with Run(binary, "launch", scenario, "--allow-programs", "--out", out) as run:
         address = out / "logs/master.address"
         wait_until(lambda: address.exists() and address.read_text().strip(), "the time-master")
         told = client.record(address.read_text().strip(), path)
         code, _ = run.finish(PATIENCE_S)
-    check(code == 0 and told.complete and told.topics["state/actor/gnc"] == 21, f"{told}")
-    return out, path
+    check(code == 0 and told.complete, f"{told}")
+    return told
 
 
 def copy(path, to, keep=lambda topic, number: True, compression=mcap.writer.CompressionType.ZSTD):
@@ -76,7 +76,7 @@ def refuses(binary, directory, scenario, path):
 
     told(r"no-such.mcap: No such file", directory / "no-such.mcap")
     told(r"probe.oem: not an MCAP file", directory / "probe.oem")
-    told(r"--replay-node: must be NODE=FILE with a node of the scenario.*got gnd=", node="gnd")
+    told(r"--replay-node: must be NODE=FILE with a node of `nodes`, got gnd=", node="gnd")
     text = scenario.read_text()
     for name, old, new, words in (
             ("digest", "seed: 1", "seed: 2", "is of another scenario, seed, plan or file: digest [0-9a-f]{32}"),
@@ -102,6 +102,31 @@ def refuses(binary, directory, scenario, path):
         code_of_damage(binary, directory, scenario, directory / "wrong.mcap")
 
 
+def replays_detectors_and_trackers(binary, directory):
+    """Each alone and both: tracks, tasks, the frames of the telescope that follows them, detections."""
+    (directory / "detector.py").write_bytes((ROOT / "clients/python/examples/detector.py").read_bytes())
+    scenario = own_tracker.write(directory, "both.yaml", own_tracker.program("follow", sleep_s=0.02), duration_s=60)
+    text = scenario.read_text().replace("nodes: [", f"nodes: [{{name: peaks, run: [{sys.executable}, detector.py], "
+                                        "options: {threshold: 8, most: 50}}, ")
+    for sensor in ("{name: eye,", "name: scope\n"):
+        text = text.replace(sensor, sensor + (" detection: {node: peaks}," if "{" in sensor else "    detection: {node: peaks}\n"))
+    scenario.write_text(text)
+    out, path = directory / "both", directory / "both.mcap"
+    recorded(binary, scenario, out, path)
+    made = [len((out / name).read_text().splitlines()) for name in ("tracks.jsonl", "tasks.jsonl", "detections.jsonl", "scope/frames.jsonl")]
+    check(min(made) > 0, f"{made} tracks, tasks, detections, frames of the telescope")
+    for nodes in (["mine"], ["peaks"], ["mine", "peaks"]):
+        replayed = [word for node in nodes for word in ("--replay-node", f"{node}={path}")]
+        leave = ["--allow-programs"] if len(nodes) == 1 else []
+        dmise(binary, "run", scenario, *replayed, *leave, "--out", directory / "both-again", "--force")
+        check_same(directory / "both-again", out, f"{' and '.join(nodes)} replayed")
+    for node, topic, numbers, words in (("mine", "track/fusion-node", [9], "lacks tracks of tick 8"),
+                                        ("peaks", "detection/eye", range(3, 11), "lacks frame [0-9]+ of sensor eye")):
+        gap = copy(path, directory / "gap.mcap", lambda name, sequence: name != topic or sequence not in numbers)
+        said = dmise(binary, "run", scenario, "--replay-node", f"{node}={gap}", "--allow-programs", "--out", directory / "refused", code=2)
+        check(re.search(words, said), said.strip().splitlines()[-1])
+
+
 def code_of_damage(binary, directory, scenario, path):
     """A flipped byte is found by the checksums of chunks, or is of no account."""
     with Run(binary, "run", scenario, "--replay-node", f"gnc={path}", "--out", directory / "damaged", "--force") as run:
@@ -112,9 +137,12 @@ def code_of_damage(binary, directory, scenario, path):
 def test(binary, directory):
     (directory / "probe.oem").write_text("")
     scenario = write(directory, "replay.yaml", node=NODE)
-    out, path = recorded(binary, directory, scenario)
+    out, path = directory / "recorded", directory / "run.mcap"
+    told = recorded(binary, scenario, out, path)
+    check(told.topics["state/actor/gnc"] == 21, f"{told}")
     replays(binary, directory, scenario, out, path)
     refuses(binary, directory, scenario, path)
+    replays_detectors_and_trackers(binary, directory)
 
 
 if __name__ == "__main__":

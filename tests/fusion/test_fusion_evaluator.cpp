@@ -145,7 +145,7 @@ TEST(FusionEvaluator, GoesOnToTheByteWhereAnotherEnded) {
   const auto directory = [&](const char* name) { return (run.directory / name).string(); };
   FusionEvaluator whole(run.scenario, make_clock(run.scenario), directory("whole"));
   const auto expected = steps(whole, run, 0, 9);
-  EXPECT_EQ(FusionJournal::ticks_written(fusion_journal_path(directory("whole"))), 10);
+  EXPECT_EQ(InputJournal::ticks_written(input_journal_path(directory("whole"), fusion_node)), 10);
   {  // a process that ends after tick 6
     FusionEvaluator first(run.scenario, make_clock(run.scenario), directory("parts"));
     steps(first, run, 0, 6);
@@ -165,9 +165,9 @@ TEST(FusionEvaluator, DoesNotGoOnWithoutItsInputs) {
   EXPECT_THROW(node.resume(3, {}), Error);
   // A journal that is cut within a tick has the ticks before.
   steps(node, run, 0, 3);
-  const std::string path = fusion_journal_path(run.directory / "out");
+  const std::string path = input_journal_path(run.directory / "out", fusion_node);
   fs::resize_file(path, fs::file_size(path) - 3);
-  EXPECT_EQ(FusionJournal::ticks_written(path), 3);
+  EXPECT_EQ(InputJournal::ticks_written(path), 3);
 }
 
 // What a program that was started again hears: the ticks that it has not, as they were.
@@ -175,7 +175,7 @@ TEST(FusionEvaluator, ItsJournalRepeatsSomeTicks) {
   TwoSites run;
   FusionEvaluator node(run.scenario, make_clock(run.scenario), run.directory / "out");
   steps(node, run, 0, 5);
-  const FusionJournal journal(fusion_journal_path(run.directory / "out"));
+  const InputJournal journal(input_journal_path(run.directory / "out", fusion_node));
   std::vector<Tick> heard;
   journal.replay(2, 5, [&](Tick tick, std::span<const Message> inputs) {
     heard.push_back(tick);

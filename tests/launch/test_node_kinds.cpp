@@ -92,7 +92,7 @@ TEST(NodeKinds, WhatIsNotWantedIsNoNodeOfTheRun) {
   EXPECT_FALSE(kind_of_node("other", run.scenario));
 }
 
-// A container for each but the user's own: what a scenario does not want stands by.
+// What a scenario does not want stands by.
 TEST(NodeKinds, ComposeHasAServiceForEachKindAndNoOther) {
   std::set<std::string> services, expected{"time-master", "broker"};
   for (const auto& service : YAML::Load(text_of("compose.yaml"))["services"]) {
@@ -103,12 +103,11 @@ TEST(NodeKinds, ComposeHasAServiceForEachKindAndNoOther) {
               std::string::npos)
         << name;
   }
-  for (const NodeKind& kind : node_kinds())
-    if (!kind.each_own_node) expected.insert(kind.name);
+  for (const NodeKind& kind : node_kinds()) expected.insert(kind.name);
   EXPECT_EQ(services, expected);
 }
 
-// A task for each but the user's own, then one for each sensor.
+// A task for each, then those for each own node and each sensor.
 TEST(NodeKinds, ASlurmJobHasATaskForEachKind) {
   const std::string job = text_of("slurm/run.sbatch");
   int task = 2;
@@ -118,7 +117,9 @@ TEST(NodeKinds, ASlurmJobHasATaskForEachKind) {
     EXPECT_NE(job.find(line), std::string::npos) << line;
   }
   EXPECT_NE(job.find("--ntasks=$((" + std::to_string(task) + " + SENSORS))"), std::string::npos);
-  EXPECT_NE(job.find("--slot $((SLURM_PROCID - " + std::to_string(task - 1) + "))"),
+  EXPECT_NE(job.find("--ntasks=$((" + std::to_string(task) + " + OWN_NODES + SENSORS))"),
+            std::string::npos);
+  EXPECT_NE(job.find("slot=$((SLURM_PROCID - " + std::to_string(task - 1) + "))"),
             std::string::npos);
 }
 

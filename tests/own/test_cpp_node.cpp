@@ -172,6 +172,24 @@ TEST_F(CppNode, ContinuesFromItsCheckpoint) {
   EXPECT_EQ(asked(first, 2).states.position(2).z, asked(second, 2).states.position(2).z);
 }
 
+TEST_F(CppNode, HearsWhatOthersPublish) {
+  OwnProgram program = this->program();
+  v1::OwnNodeStep step = step_of(0);
+  for (const std::uint32_t frame : {3u, 4u}) {
+    const Encoded encoded = encode(State(DetectionSet{.sensor = "alpha", .frame = frame}));
+    v1::OwnNodeHeard& one = *step.add_heard();
+    one.set_topic("detection/alpha");
+    one.set_kind(v1::KIND_DETECTION_SET);
+    one.set_payload(encoded.payload);
+  }
+  program.ask(step, environment_of(0));
+  EXPECT_EQ(program.stepped()->states.position(0).x, 5.0 + 300.0 + 400.0);
+  step.mutable_heard(1)->set_payload("\xff");
+  step.set_tick(1);
+  program.ask(step, environment_of(1));
+  EXPECT_THROW(program.stepped(), Error);
+}
+
 TEST_F(CppNode, WhatItsModelThrowsIsTheReason) {
   EXPECT_EQ(why_step_fails("throws"), "no fuel");
   EXPECT_EQ(why_step_fails("throws_a_number"), "its model throws what is no std::exception");

@@ -1,5 +1,5 @@
 // A walk in steps of the seed and the tick, by the library for users' programs. With the option
-// `fault` it answers tick 3 wrongly.
+// `fault` it answers tick 3 wrongly. Detections push it.
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -13,6 +13,8 @@ struct Walk {
 
   std::vector<std::optional<dmise::ObjectState>> step(const dmise::ActorWorld& world) {
     place_m += double(world.task.seed) + std::sqrt(double(world.tick));
+    for (const dmise::Message& message : world.heard)
+      place_m += 100.0 * std::get<dmise::DetectionSet>(*message.state).frame;
     std::vector<std::optional<dmise::ObjectState>> states(world.task.objects.size());
     for (std::size_t i = 0; i < states.size(); i += 2)
       states[i] = {.position_m = {place_m, 7e6, double(i)},

@@ -8,12 +8,14 @@ import pathlib
 import signal
 import socket
 import subprocess
+import sys
 import time
 
 from harness import Run, check, check_same, first_frame, main, wait_until, write_scenario
 
+HERE = pathlib.Path(__file__).resolve().parent
 NODES = ("broker", "orbit-node", "environment-node")
-NOT_NEEDED = ("positions-node", "fusion-node")  # by the scenario; a stack starts them all the same
+NOT_NEEDED = ("positions-node", "fusion-node", "own-node")  # by the scenario; a stack starts them all the same
 
 
 def free_address():
@@ -52,12 +54,12 @@ class Stack:
         return {name: run.finish()[0] for name, run in self.runs.items()}
 
 
-def joins_as(run):
-    """The sensor that a joined process is, once it is one."""
+def joins_as(run, program="dmise-sensor-node"):
+    """The node that a joined process is, once it is one."""
     def name():
         command = pathlib.Path(f"/proc/{run.process.pid}/cmdline").read_bytes().decode().split("\0")
-        return command[0].endswith("/dmise-sensor-node") and command[command.index("--name") + 1]
-    return wait_until(name, "a sensor's program")
+        return command[0].endswith("/" + program) and command[command.index("--name") + 1]
+    return wait_until(name, f"the program {program}")
 
 
 def says(binary, *arguments):
@@ -65,7 +67,49 @@ def says(binary, *arguments):
     return done.returncode, done.stderr.strip()
 
 
+def show_keys(keys, shown):
+    """As a container has them: some files, and nobody's keys but its own."""
+    shown.mkdir()
+    for ring in ("everybody.pubs", "sensors.keys", "own-nodes.keys"):
+        (shown / ring).symlink_to(keys / "rings" / ring)
+    for name in (*NODES, "time-master", "operator"):
+        (shown / f"{name}.key").symlink_to(keys / f"{name}.key")
+
+
+def own_nodes(binary, directory):
+    """Nodes of one's own are any free one of the scenario, too, and need the word for programs."""
+    directory.mkdir()
+    for file in (HERE / "own_actor").iterdir():
+        (directory / file.name).write_bytes(file.read_bytes())
+    scenario = write_scenario(directory, duration_s=150, name="own.yaml", on_silent_node="restart", network=", join_within_s: 60")
+    scenario.write_text(scenario.read_text().replace("{catalogue: demo}", "{catalogue: demo}, {name: probe, motion: {node: gnc}}")
+                        + f"nodes: [{{name: gnc, run: [{sys.executable}, walk.py], options: {{sleep_s: 0.05}}}}]\n")
+    keys, shown, out = directory / "own-keys", directory / "own-secrets", directory / "own"
+    check(says(binary, "keygen", keys, "--scenario", scenario, "--rings")[0] == 0, "keygen makes rings")
+    show_keys(keys, shown)
+    with Run(binary, "run", scenario, "--allow-programs", "--out", directory / "own-reference") as run:
+        check(run.finish()[0] == 0, f"a run of one process is complete {run.stderr[-300:]}")
+    with Stack(binary, scenario, out, shown) as stack:
+        stack.launch()
+        refused = stack.join("own-node", called="refused")
+        code, _ = refused.finish()
+        check(code == 2 and "--allow-programs" in refused.stderr, f"the word for programs is needed: {refused.stderr.strip()}")
+        first = stack.join("own-node", "--allow-programs", called="first")
+        check(joins_as(first, "dmise-own-node") == "gnc", "it is the node of the scenario")
+        spare = stack.join("own-node", "--allow-programs", called="spare")
+        for node in (*NODES, "alpha", "beta"):
+            stack.join(node)
+        first_frame(out, "alpha")
+        os.kill(first.process.pid, signal.SIGKILL)
+        check(joins_as(spare, "dmise-own-node") == "gnc", "a spare takes the place of an own node that was killed")
+        codes = stack.finish()
+        check(codes["launch"] == 0, f"the run is complete: {codes} {stack.runs['launch'].stderr[-300:]}")
+    check_same(out, directory / "own-reference", "with a node of one's own")
+
+
 def test(binary, directory):
+    os.environ["PYTHONPATH"] = str(HERE.parents[1] / "build/python")
+    own_nodes(binary, directory / "own-nodes")
     scenario = write_scenario(directory, duration_s=30, network=", join_within_s: 60")
     keys, reference = directory / "keys", directory / "reference"
     check(says(binary, "keygen", keys, "--scenario", scenario, "--rings")[0] == 0, "keygen makes rings")
@@ -74,13 +118,8 @@ def test(binary, directory):
     with Run(binary, "run", scenario, "--out", reference) as run:
         check(run.finish()[0] == 0, "a run of one process is complete")
 
-    # As a container has them: some files, and nobody's keys but its own.
     shown = directory / "secrets"
-    shown.mkdir()
-    (shown / "everybody.pubs").symlink_to(keys / "rings/everybody.pubs")
-    (shown / "sensors.keys").symlink_to(ring)
-    for name in (*NODES, "time-master", "operator"):
-        (shown / f"{name}.key").symlink_to(keys / f"{name}.key")
+    show_keys(keys, shown)
 
     out = directory / "slots"
     with Stack(binary, scenario, out, shown) as stack:

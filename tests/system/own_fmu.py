@@ -132,6 +132,8 @@ def tells_what_is_wrong(binary, directory):
     for of_node, words in {
             node("gone.fmu"): r":6:\d+: nodes\[0\].fmu: there is no such file in .*, got gone.fmu",
             node(unit, inputs={"along_x": "sun_x"}): r":6:\d+: nodes\[0\].inputs.along_x: .*got sun_x",
+            node(unit, outputs={"position_m": ["x", "y", "z"]}):
+                r":6:\d+: nodes\[0\].outputs: lacks velocity_m_per_s, which an FMU that moves an object must say",
             node(unit, outputs={"position_m": ["x", "y"]}): r":6:\d+: nodes\[0\].outputs.position_m: must be 3 names"}.items():
         said = own_actor.dmise(binary, "check", write(directory, "wrong.yaml", of_node), code=2)
         check(re.search(words, said), said.strip())

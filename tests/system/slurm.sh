@@ -14,6 +14,8 @@ source "$tests/stack/products.sh"
 jobs=$(readlink -f "$tests/../../launch/stack/slurm")
 scenario=$tests/stack/scenario.yaml
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
+PYTHONPATH=$(readlink -f "$tests/../../build/python")  # of the own node
+export PYTHONPATH
 
 skip() {
   [[ ${DMISE_BARE_ROOT:-0} != 1 || $1 == kernel* ]] || die "$1"
@@ -90,11 +92,15 @@ no_node() { [[ -z $(pgrep -f "$(dirname "$DMISE")/dmise-") ]]; }
 no_keys() { [[ -z $(find "$work" -maxdepth 1 -name '*.keys-*') ]]; }
 log_of() { cat "$work"/jobs/* | tail -n 30; }
 
-# submit SCRIPT SCENARIO OUT OPTION..: waits for the job's end; its exit code.
+# submit SCRIPT SCENARIO OUT OPTION.. [-- FLAG..]: waits for the job's end; its exit code.
 submit() {
-  local script=$1 of=$2 out=$3
+  local script=$1 of=$2 out=$3 options=()
   shift 3
-  (cd "$work/jobs" && sbatch --wait --parsable "$@" "$jobs/$script" "$of" "$out") >"$work/job"
+  for (( ; $# > 0; )); do
+    [[ $1 != -- ]] || { shift && break; }
+    options+=("$1") && shift
+  done
+  (cd "$work/jobs" && sbatch --wait --parsable "${options[@]}" "$jobs/$script" "$of" "$out" "$@") >"$work/job"
 }
 
 check_run() {
@@ -106,11 +112,17 @@ check_run() {
 check_failure() {
   local code=0
   sed 's/seed: 1/seed: 7/' "$scenario" >"$work/other.yaml"
-  cp "$tests/stack/small.yaml" "$work/"
   submit run.sbatch "$work/other.yaml" "$work/run" --nodes 2 --ntasks 9 || code=$?
   ((code == 2)) || die "exit code $code of a job into another run's directory, not 2: $(log_of)"
   wait_until 60 "the end of all nodes" no_node
   say "ok: the exit code of the job is that of the run"
+}
+
+# Its first task after the six of every run is the node of one's own.
+check_own_node() {
+  OWN_NODES=1 submit run.sbatch "$work/own.yaml" "$work/own" --nodes 2 --ntasks 10 -- --allow-programs ||
+    die "the job with a node of one's own failed: $(log_of)"
+  same_products "$work/own-reference" "$work/own" 17 "a job with a node of one's own"
 }
 
 check_data_set() {
@@ -136,8 +148,13 @@ check_cancel() {
 "$DMISE" run "$scenario" --out "$work/reference" >"$work/reference.log" 2>&1 ||
   die "dmise run: $(tail -n 1 "$work/reference.log")"
 "$DMISE" run "$scenario" --seed 2 --out "$work/reference-2" >"$work/reference.log" 2>&1
+cp "$tests"/stack/small.yaml "$tests"/own_actor/{walk,mortal}.py "$work/"
+with_own_node /usr/bin/python3 >"$work/own.yaml"
+"$DMISE" run "$work/own.yaml" --allow-programs --out "$work/own-reference" >"$work/reference.log" 2>&1 ||
+  die "dmise run with a node of one's own: $(tail -n 1 "$work/reference.log")"
 start_cluster
 check_run
+check_own_node
 check_failure
 check_data_set
 check_cancel

@@ -69,6 +69,7 @@ in_docker() {  # ARG..: of docker build
 
 build() {  # TARGET NAME: a stage of the Dockerfile
   in_docker -f "$work/tree/launch/stack/Dockerfile" --build-arg BASE="$base" --build-arg BUILDER="$warm" \
+    --build-arg PACKAGES="python3-numpy python3-protobuf python3-zmq" \
     ${1:+--target "$1"} -t "$2" "$work/tree"
 }
 
@@ -106,7 +107,7 @@ make_keys() {
   docker run --rm --network none --read-only -v "$DMISE_KEYS:/keys" "$DMISE_IMAGE" keygen /keys gateway >/dev/null
   echo "view $view_token" | install -m 400 -o 10001 -g 10001 /dev/stdin "$DMISE_KEYS/view.tokens"
   docker run --rm --network none --read-only -v "$DMISE_KEYS:/keys" -v "$DMISE_SCENARIOS:/scenarios:ro" \
-    "$DMISE_IMAGE" keygen /keys --scenario /scenarios/scenario.yaml --rings >/dev/null
+    "$DMISE_IMAGE" keygen /keys --scenario "/scenarios/$DMISE_SCENARIO" --rings >/dev/null
 }
 
 # Every container as compose.yaml says, and no secret key where `docker inspect` shows it.
@@ -131,6 +132,26 @@ check_compose() {
   docker cp "$(container_of time-master):/products" "$work/compose" >/dev/null
   same_products "$work/reference" "$work/compose" 17 "compose ($((SECONDS - began)) s)"
   check_containers 9
+  compose down --volumes --timeout 1 >/dev/null 2>&1
+}
+
+# A scenario whose program, in Python, moves an object: one own node, and one that stands by. Its digest is that of the
+# image's Python, so the image runs it alone, too.
+check_own_node() {
+  local began=$SECONDS
+  local -x DMISE_SCENARIO=own.yaml DMISE_KEYS=$work/own-keys DMISE_FLAGS=--allow-programs
+  docker run --rm --network none --entrypoint python3 "$DMISE_IMAGE" -c 'import dmise' 2>/dev/null ||
+    { say "note: the image has no Python for nodes of one's own"; return; }
+  docker run --name own --network none -v "$DMISE_SCENARIOS:/scenarios:ro" "$DMISE_IMAGE" run /scenarios/own.yaml \
+    --allow-programs --out /products >"$work/own.log" 2>&1 || die "dmise run: $(tail -n 5 "$work/own.log")"
+  docker cp own:/products "$work/own-reference" >/dev/null
+  docker rm -fv own >/dev/null
+  make_keys
+  compose up --no-color --scale sensor=3 --scale own-node=2 --exit-code-from time-master >"$work/up.log" 2>&1 ||
+    die "compose up: $(tail -n 30 "$work/up.log")"
+  docker cp "$(container_of time-master):/products" "$work/own" >/dev/null
+  same_products "$work/own-reference" "$work/own" 17 "compose with a node of one's own ($((SECONDS - began)) s)"
+  grep -q 'own-node.*standing by' "$work/up.log" || die "no own node stood by"
   compose down --volumes --timeout 1 >/dev/null 2>&1
 }
 
@@ -198,7 +219,8 @@ trap clean_up EXIT
 view_token=view-of-the-stack-test
 export DMISE_SCENARIOS=$work/scenarios DMISE_SCENARIO=scenario.yaml DMISE_KEYS=$work/keys
 mkdir "$work/tree" "$DMISE_SCENARIOS"
-cp "$tests"/stack/*.yaml "$DMISE_SCENARIOS/"
+cp "$tests"/stack/*.yaml "$tests"/own_actor/{walk,mortal}.py "$DMISE_SCENARIOS/"
+with_own_node python3 >"$DMISE_SCENARIOS/own.yaml"
 chmod -R a+rX "$DMISE_SCENARIOS"
 given=${DMISE_IMAGE-}
 export DMISE_IMAGE=dmise-test
@@ -219,6 +241,7 @@ remove_containers  # of a test that was cut short
 check_image
 make_keys
 check_compose
+check_own_node
 check_view
 check_failure
 check_swarm

@@ -1,7 +1,13 @@
-# Sourced by the tests of runs on many hosts. Uses `name` (of the test).
+# Sourced by the tests of runs on many hosts. Uses `name` (of the test), `tests` (their directory).
 
 say() { printf '%s: %s\n' "$name" "$*"; }
 die() { say "$*" >&2; exit 1; }
+
+# with_own_node PYTHON: the scenario with an object that a program moves.
+with_own_node() {
+  sed 's/{catalogue: demo}/&, {name: probe, motion: {node: gnc}}/' "$tests/stack/scenario.yaml"
+  echo "nodes: [{name: gnc, run: [$1, walk.py]}]"
+}
 
 # wait_until SECONDS WHAT COMMAND..: until the command succeeds; gives up after so long.
 wait_until() {

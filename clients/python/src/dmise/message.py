@@ -67,16 +67,20 @@ class Message:
     @functools.cached_property
     def records(self) -> list[Any]:
         """The records of the message: each detection, truth or track of a set, else one or none."""
-        body = self.body
-        if body is None:
+        if self.body is None:
             return []
-        if body.DESCRIPTOR.name.endswith("Set"):
-            members = next(f.name for f in body.DESCRIPTOR.fields if f.message_type is not None)
-            return [record_of(member, self.start_utc_of_run) for member in getattr(body, members)]
-        record = record_of(body, self.start_utc_of_run)
-        if len(self.frames) == 4 and hasattr(body, "arrays") and record is not body:
-            try:
-                with_arrays(record, body.arrays, self.frames[3])
-            except _READ_ERRORS as error:
-                raise ValueError(f"{self.topic}: wrong arrays: {error}") from None
-        return [record]
+        try:
+            return records_in(self.body, self.frames[3] if len(self.frames) == 4 else b"", self.start_utc_of_run)
+        except _READ_ERRORS as error:
+            raise ValueError(f"{self.topic}: wrong arrays: {error}") from None
+
+
+def records_in(body: Any, arrays: bytes, start_utc: datetime.datetime | None) -> list[Any]:
+    """The records of a payload: each member of a set, else one. Raises ValueError or TypeError for wrong arrays."""
+    if body.DESCRIPTOR.name.endswith("Set"):
+        members = next(f.name for f in body.DESCRIPTOR.fields if f.message_type is not None)
+        return [record_of(member, start_utc) for member in getattr(body, members)]
+    record = record_of(body, start_utc)
+    if arrays and hasattr(body, "arrays") and record is not body:
+        with_arrays(record, body.arrays, arrays)
+    return [record]

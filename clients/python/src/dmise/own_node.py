@@ -26,9 +26,11 @@ import zmq
 
 from . import own_detector, own_tracker, protocol
 from .convert import record_of, start_of
+from .message import records_in
 from .own_detector import Detector, Served
 from .own_states import StatesWriter
 from .own_tracker import Known, Tracker
+from .topics import is_wanted
 from .world import EnvironmentState
 
 ADDRESS_VARIABLE = "DMISE_OWN_NODE"
@@ -48,6 +50,20 @@ class World:
     objects: list[str] = field(default_factory=list)  # those that it moves or turns, in the order of arrays
     seed: int = 0  # of the scenario
     known: Known = field(default_factory=Known)  # to a tracker
+    messages: Any = field(default=(), repr=False)  # that came since the last tick, OwnNodeHeard each
+
+    @functools.cached_property
+    def topics(self) -> dict[str, list[Any]]:
+        """What came since the last tick by its topic, as the records of `dmise.subscribe`; read when it is asked for."""
+        topics: dict[str, list[Any]] = {}
+        for one in self.messages:
+            body = protocol.class_of_kind(one.kind).FromString(one.payload)
+            topics.setdefault(one.topic, []).extend(records_in(body, one.arrays, self.start_utc))
+        return topics
+
+    def heard(self, topic: str) -> list[Any]:
+        """The records of a topic, or of all that begin so: "detection/"."""
+        return [record for name, records in self.topics.items() if is_wanted([topic], name) for record in records]
 
     @functools.cached_property
     def environment(self) -> EnvironmentState:
@@ -215,16 +231,16 @@ class _Conversation:
         said = self._model(*arguments)
         return asyncio.run(_result_of(said)) if inspect.isawaitable(said) else said
 
-    def _world(self, at: Any, environment: bytes) -> World:
+    def _world(self, at: Any, environment: bytes, messages: Any = ()) -> World:
         return World(at.tick, at.time_ns, environment, self._start, self._begun.node, self._objects, self._begun.seed,
-                     self._known)
+                     self._known, messages)
 
     def _checkpoint(self, asked: Any, answer: Any) -> None:
         if asked.give_checkpoint and hasattr(self._model, "checkpoint"):
             answer.checkpoint = self._model.checkpoint()
 
     def _step(self, step: Any, environment: bytes) -> list[bytes]:
-        said = self._said_by(step.time_ns / 1e9, self._world(step, environment), self._options)
+        said = self._said_by(step.time_ns / 1e9, self._world(step, environment, step.heard), self._options)
         stepped = protocol.OwnNodeStepped()
         self._checkpoint(step, stepped)
         return [protocol.OwnNodeAnswer(stepped=stepped).SerializeToString(), *self._states.frames(said, step.tick, step.time_ns)]

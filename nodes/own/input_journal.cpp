@@ -1,16 +1,13 @@
-#include "nodes/fusion/fusion_journal.h"
+#include "nodes/own/input_journal.h"
 
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <vector>
 
 #include "core/base/crc32c.h"
 #include "core/base/error.h"
-#include "core/config/node_kinds.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise {
@@ -63,13 +60,30 @@ Message message_of(const Record& record) {
 
 }  // namespace
 
-FusionJournal::~FusionJournal() {
+InputReader::InputReader(const std::string& path) : file_(path, std::ios::binary) {}
+
+bool InputReader::next(std::vector<Message>* messages) {
+  Record record;
+  while (read_record(file_, record)) {
+    if (record.head.kind != 0) {
+      if (messages) messages->push_back(message_of(record));
+      continue;
+    }
+    if (record.head.tick != tick_) return false;
+    ++tick_;
+    bytes_ = std::uintmax_t(file_.tellg());
+    return true;
+  }
+  return false;
+}
+
+InputJournal::~InputJournal() {
   if (file_) std::fclose(file_);
 }
 
-void FusionJournal::fail(const std::string& reason) const { throw Error(path_ + ": " + reason); }
+void InputJournal::fail(const std::string& reason) const { throw Error(path_ + ": " + reason); }
 
-void FusionJournal::open(const char* mode) {
+void InputJournal::open(const char* mode) {
   if (file_) std::fclose(file_);
   std::error_code code;
   std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), code);
@@ -78,46 +92,49 @@ void FusionJournal::open(const char* mode) {
   if (!file_) fail(std::string("can't be written: ") + std::strerror(errno));
 }
 
-void FusionJournal::clear() { open("wb"); }
+void InputJournal::clear() { open("wb"); }
 
-std::uintmax_t FusionJournal::read(
+std::uintmax_t InputJournal::read(
     Tick from, Tick before,
     const std::function<void(Tick, std::span<const Message>)>& again) const {
-  std::uintmax_t whole = 0;
-  std::ifstream file(path_, std::ios::binary);
+  InputReader reader(path_);
   std::vector<Message> inputs;
-  Record record;
-  Tick next = 0;
-  while (next < before && read_record(file, record)) {
-    if (record.head.kind != 0) {
-      if (next >= from) inputs.push_back(message_of(record));
-      continue;
-    }
-    if (record.head.tick != next) fail("tick " + std::to_string(next) + " is missing");
-    if (next++ >= from) again(next - 1, inputs);
+  while (reader.tick() < before) {
+    const Tick tick = reader.tick();
     inputs.clear();
-    whole = std::uintmax_t(file.tellg());
+    if (!reader.next(tick >= from ? &inputs : nullptr))
+      fail("ends before tick " + std::to_string(tick) + ", and the run continues at " +
+           std::to_string(before) + ": start the run from its beginning");
+    if (tick >= from) again(tick, inputs);
   }
-  if (next < before)
-    fail("ends before tick " + std::to_string(next) + ", and the run continues at " +
-         std::to_string(before) + ": start the run from its beginning");
-  return whole;
+  return reader.bytes();
 }
 
-void FusionJournal::replay(Tick from, Tick before,
-                           const std::function<void(Tick, std::span<const Message>)>& again) const {
+void InputJournal::replay(Tick from, Tick before,
+                          const std::function<void(Tick, std::span<const Message>)>& again) const {
   read(from, before, again);
 }
 
-void FusionJournal::resume(Tick tick,
-                           const std::function<void(Tick, std::span<const Message>)>& again) {
-  const std::uintmax_t whole = read(0, tick, again);
+void InputJournal::resume(Tick tick,
+                          const std::function<void(Tick, std::span<const Message>)>& again) {
+  continue_after(read(0, tick, again));
+}
+
+Tick InputJournal::resume() {
+  InputReader reader(path_);
+  while (reader.next(nullptr)) {
+  }
+  continue_after(reader.bytes());
+  return reader.tick();
+}
+
+void InputJournal::continue_after(std::uintmax_t bytes) {
   open("ab");
-  if (::truncate(path_.c_str(), off_t(whole)) != 0)
+  if (::truncate(path_.c_str(), off_t(bytes)) != 0)
     fail(std::string("can't be truncated: ") + std::strerror(errno));
 }
 
-void FusionJournal::add(std::span<const Message> inputs) {
+void InputJournal::add(std::span<const Message> inputs) {
   for (const Message& message : inputs) {
     const Encoded encoded = encode(*message.state);
     Record record;
@@ -131,27 +148,22 @@ void FusionJournal::add(std::span<const Message> inputs) {
   }
 }
 
-void FusionJournal::end(Tick tick) {
+void InputJournal::end(Tick tick) {
   Record record;
   record.head.tick = tick;
   if (!write(file_, record) || std::fflush(file_) != 0)
     fail(std::string("can't be written: ") + std::strerror(errno));
 }
 
-Tick FusionJournal::ticks_written(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  Record record;
-  Tick next = 0;
-  while (read_record(file, record))
-    if (record.head.kind == 0) {
-      if (record.head.tick != next) break;
-      ++next;
-    }
-  return next;
+Tick InputJournal::ticks_written(const std::string& path) {
+  InputReader reader(path);
+  while (reader.next(nullptr)) {
+  }
+  return reader.tick();
 }
 
-std::string fusion_journal_path(const std::string& directory) {
-  return directory + "/" + fusion_node + "/inputs.journal";
+std::string input_journal_path(const std::string& directory, const std::string& node) {
+  return directory + "/" + node + "/inputs.journal";
 }
 
 }  // namespace dmise
