@@ -5,6 +5,7 @@ directory; the tracker that it writes finds the satellite where python3-sgp4 has
     tutorial.py DMISE
 """
 import datetime
+import json
 import os
 import pathlib
 import re
@@ -49,7 +50,7 @@ def main():
         done = subprocess.run(["/bin/bash", "-c", script], cwd=name, env=environment, capture_output=True, text=True,
                               timeout=280, check=False)
         check(done.returncode == 0, f"the commands of the tutorial: {done.returncode}: {done.stderr[-1500:]}")
-        for told in ("my-telescope", "did you mean exposure_s?", "refused, as it should be"):
+        for told in ("my-telescope", "did you mean exposure_s?", "refused, as it should be", "refused: it starts a program"):
             check(told in done.stdout + done.stderr or told == "my-telescope", f"they tell: {told}")
         out = pathlib.Path(name)
         for file in ("out/night/index.html", "out/night/west/frame-000001.fits", "out/night/detections.jsonl", "out/tdm"):
@@ -64,6 +65,10 @@ def main():
         low, high = map(float, re.search(r"heights of ([0-9.]+) to ([0-9.]+) km", page).groups())
         printed = [float(km) for _, km in found]
         check(low - 1 < min(printed) and max(printed) < high + 1, f"the page says what it prints: {min(printed)} to {max(printed)} km")
+        truths = [json.loads(line) for line in (out / "out/own/truth.jsonl").read_text().splitlines()]
+        radii_km = [np.linalg.norm(truth["true_position_gcrs_m"]) / 1e3 for truth in truths]
+        check(len(radii_km) == 6 and np.ptp(radii_km) < 5 and abs(radii_km[0] - 7199) < 1, f"the model's object is at {radii_km} km")
+        check(re.search(r"^west +6 +\S+ +6 +0 ", (out / "own-score.txt").read_text(), re.M), "and is found in all frames")
         check(worst < WITHIN_KM, f"within {worst:.2f} km of the height of python3-sgp4")
 
 
