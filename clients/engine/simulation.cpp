@@ -228,7 +228,9 @@ void add_frame(nb::module_& module) {
 
 void add_simulation(nb::module_& module) {
   add_frame(module);
-  nb::class_<Stream>(module, "Stream").def("next", &Stream::next).def("stop", &Stream::stop);
+  nb::class_<Stream>(module, "Stream", nb::is_weak_referenceable())
+      .def("next", &Stream::next)
+      .def("stop", &Stream::stop);
   nb::class_<Simulation>(module, "Simulation")
       .def_static("of_file",
                   [](const std::string& path, std::optional<std::uint64_t> seed) {

@@ -72,7 +72,7 @@ def write_licences(info, bundled, owners):
     lines = ["Libraries in this wheel, from Debian, and where their licences are. FFTW is under the GPL-2.0-or-later: with it,",
              "this wheel as a whole is under the GPL-3.0-or-later. The source of DMISE stays under the Apache-2.0.", ""]
     for library in sorted(bundled):
-        stem = re.sub(r"-[0-9a-f]{8}(?=\.so)", "", library)
+        stem = re.sub(r"-[0-9a-f]{8}(?=\.)", "", library)
         package = next((owner for name, owner in owners.items() if name.startswith(stem.split(".so")[0])), None)
         text = pathlib.Path(f"/usr/share/doc/{package}/copyright")
         if package is None or not text.exists():
@@ -97,7 +97,7 @@ def write_metadata(info, tag):
     (info / "entry_points.txt").write_text("[console_scripts]\ndmise = dmise.commands:main\n")
 
 
-def packed(content, path):
+def packed(content, path, level):
     """Writes a wheel of a directory, with the digests of its files."""
     record = next(content.glob("*.dist-info")) / "RECORD"
     files = sorted(file for file in content.rglob("*") if file.is_file() and file != record)
@@ -106,7 +106,7 @@ def packed(content, path):
         digest = base64.urlsafe_b64encode(hashlib.sha256(file.read_bytes()).digest()).rstrip(b"=").decode()
         lines.append(f"{file.relative_to(content)},sha256={digest},{file.stat().st_size}")
     record.write_text("\n".join([*lines, f"{record.relative_to(content)},,"]) + "\n")
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=level) as wheel:
         for file in [*files, record]:
             member = zipfile.ZipInfo(str(file.relative_to(content)), WHEN)
             member.external_attr = (file.stat().st_mode & 0xFFFF) << 16
@@ -137,7 +137,7 @@ def make(tree, out, work):
     info = content / f"{NAME}.dist-info"
     write_metadata(info, tag)
     plain = work / f"{NAME}-{tag}-linux_x86_64.whl"
-    packed(content, plain)
+    packed(content, plain, 1)
     with_libraries = work / "repaired"
     with_libraries.mkdir()
     made = repaired(plain, with_libraries)
@@ -149,7 +149,7 @@ def make(tree, out, work):
             path.chmod(member.external_attr >> 16 & 0o777 or 0o644)
     write_licences(final / info.name, [path.name for path in (final / "dmise.libs").iterdir()], owners)
     out.mkdir(parents=True, exist_ok=True)
-    packed(final, out / made.name)
+    packed(final, out / made.name, 9)
     return out / made.name
 
 

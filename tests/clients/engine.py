@@ -370,6 +370,12 @@ class Catalogues(unittest.TestCase):
 
 
 class Package(unittest.TestCase):
+    def test_a_program_may_end_in_the_middle_of_an_iteration(self):
+        begin = time.monotonic()
+        self.assertEqual(self.run_python(f"import dmise; sim = dmise.Simulation({SCENARIO!r}); frames = sim.frames('west');"
+                                         "never = sim.frames('east'); print(next(frames).number)"), ["1"])
+        self.assertLess(time.monotonic() - begin, 30.0)
+
     def run_python(self, code):
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
                               env={**os.environ, "PYTHONPATH": str(ROOT / "build/python")}).stdout.split()

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import weakref
 from typing import Any
 
 try:
@@ -12,13 +13,17 @@ except ImportError as missing:
                       "checkout (docs/python.md)", name="dmise._engine") from None
 
 core: Any = _engine
+streams: weakref.WeakSet[Any] = weakref.WeakSet()  # of frames, whose threads wait until they are asked
 _process = os.getpid()
 
 
 def _end() -> None:
-    """What the engine still computes in this process, for nobody, ends before its code does."""
-    if os.getpid() == _process:
-        core.wait_for_detached(60.0)
+    """What the engine still does in this process ends before its code does."""
+    if os.getpid() != _process:
+        return
+    for stream in streams:
+        stream.stop()
+    core.wait_for_detached(60.0)
 
 
 atexit.register(_end)

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from .cards import CardValue, values_of
 from .convert import start_of
-from .engine import core
+from .engine import core, streams
 from .errors import InputError
 from .json_lines import record_of_line
 from .records import Detection, FrameReport, Record, Truth
@@ -83,7 +83,9 @@ class Simulation:
         threads   that compute; the frames do not depend on them
         layers    keeps the expected light of stars, objects and sky, and masks of objects, which takes longer
         """
-        return self._iterate(self._core.frames([*sensors], threads, layers))
+        stream = self._core.frames([*sensors], threads, layers)
+        streams.add(stream)
+        return self._iterate(stream)
 
     def _iterate(self, stream: Any) -> Iterator[SimulatedFrame]:
         start = self.start_utc

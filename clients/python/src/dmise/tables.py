@@ -55,7 +55,7 @@ def table_of(records: Sequence[Record], cls: type[Record]) -> Table:
     """A table of records of a class, which may be none. A list of numbers that a record lacks is zeros."""
     fields = [_field(name, records, cls()) for name in vars(cls())]
     table = np.zeros(len(records), dtype=fields)
-    for name in table.dtype.names:
+    for name, *_ in fields:
         for i, record in enumerate(records):
             value = getattr(record, name)
             if np.size(value):
