@@ -12,7 +12,8 @@ install(FILES LICENSE NOTICE CITATION.cff DESTINATION share/doc/dmise COMPONENT 
 install(FILES launch/package/copyright DESTINATION share/doc/dmise COMPONENT runtime)
 
 get_target_property(python_dir dmise_proto_python PYTHON_DIR)
-install(DIRECTORY ${python_dir}/dmise DESTINATION lib/python3/dist-packages COMPONENT runtime PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ${python_dir}/dmise DESTINATION lib/python3/dist-packages COMPONENT runtime PATTERN __pycache__ EXCLUDE
+        PATTERN _engine* EXCLUDE PATTERN lib EXCLUDE)
 
 install(DIRECTORY ${CMAKE_BINARY_DIR}/dashboard DESTINATION share/dmise COMPONENT runtime OPTIONAL)  # where npm made it
 

@@ -8,12 +8,11 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/text_file.h"
-#include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/orbit/element_text.h"
-#include "core/orbit/sgp4_batch.h"
 #include "core/orbit/synthetic_catalogue.h"
+#include "core/propagation/catalogue_states.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
@@ -89,10 +88,8 @@ void print_info(const FileOptions& options) {
   need_elements(catalogue);
 }
 
-template <class F>
-void append(std::string& row, const Vec<F>& position_m, const Vec<F>& velocity_m_per_s) {
-  for (const auto& v : {position_m / 1e3, velocity_m_per_s / 1e3})
-    for (const double x : {v.x, v.y, v.z}) row += "," + shortest_text(x);
+StateAxes axes_of(const std::string& frame) {
+  return frame == "teme" ? StateAxes::teme : frame == "gcrs" ? StateAxes::gcrs : StateAxes::itrs;
 }
 
 void print_states(const StatesOptions& options) {
@@ -102,39 +99,23 @@ void print_states(const StatesOptions& options) {
   for (const auto& problem : catalogue.refused)
     print_note(catalogue.describe(problem) + " (left out)");
   for (const auto& problem : catalogue.warnings) print_note(catalogue.describe(problem));
-  const Clock clock(utc, options.earth_orientation.empty()
-                             ? nullptr
-                             : std::make_shared<const IersTable>(
-                                   IersTable::read_finals2000a(options.earth_orientation)));
-  if (options.frame != "teme")  // which needs no Earth
-    for (const auto& warning : clock.warnings({0})) print_note(warning);
-  const EarthOrientation earth = earth_orientation(clock, {0});
-  const Sgp4Batch batch(catalogue.elements);
-  const std::size_t n = batch.size();
-  std::vector<double> position(3 * n), velocity(3 * n);
-  std::vector<std::uint8_t> code(n);
-  batch.propagate(utc.jd1, utc.jd2, position, velocity, code);
+  const auto iers = options.earth_orientation.empty()
+                        ? nullptr
+                        : std::make_shared<const IersTable>(
+                              IersTable::read_finals2000a(options.earth_orientation));
+  const StateAxes axes = axes_of(options.frame);
+  if (axes != StateAxes::teme)  // which needs no Earth
+    for (const auto& warning : Clock(utc, iers).warnings({0})) print_note(warning);
+  Threads threads(1);
+  const auto states = states_of(catalogue.elements, std::span(&utc, 1), axes, iers, threads);
   std::puts("id,code,x_km,y_km,z_km,vx_km_s,vy_km_s,vz_km_s");
   std::string row;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec<Teme> r{position[i], position[n + i], position[2 * n + i]};
-    const Vec<Teme> v{velocity[i], velocity[n + i], velocity[2 * n + i]};
-    row = std::to_string(catalogue.elements[i].catalogue_number) + "," + std::to_string(code[i]);
-    if (code[i] != 0) {
-      row += ",,,,,,";
-    } else if (options.frame == "teme") {
-      append(row, r, v);
-    } else if (options.frame == "gcrs") {
-      const auto gcrs_from_teme = earth.gcrs_from_teme({0});
-      append(row, gcrs_from_teme * r, gcrs_from_teme * v);
-    } else {
-      // Velocity relative to the rotating Earth: subtract that of a fixed point.
-      const auto itrs_from_teme = earth.itrs_from_teme({0});
-      const auto itrs_from_gcrs = earth.itrs_from_gcrs({0});
-      const Vec<Itrs> place = itrs_from_teme * r;
-      append(row, place,
-             itrs_from_teme * v - itrs_from_gcrs * earth.velocity_of_fixed_point(place, {0}));
-    }
+  for (std::size_t i = 0; i < states.objects; ++i) {
+    row = std::to_string(catalogue.elements[i].catalogue_number) + "," +
+          std::to_string(states.code[i]);
+    for (const auto* vectors : {&states.position_m, &states.velocity_m_per_s})
+      for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+        row += states.code[i] != 0 ? "," : "," + shortest_text((*vectors)[k] / 1e3);
     std::puts(row.c_str());
   }
 }

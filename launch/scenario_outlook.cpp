@@ -4,9 +4,7 @@
 
 #include "core/base/printable.h"
 #include "launch/notes.h"
-#include "orbit-node/load_objects.h"
 #include "sensors/outlook/outlook_text.h"
-#include "sensors/pipeline/make_sensor.h"
 
 namespace dmise {
 namespace {
@@ -39,13 +37,6 @@ std::string node_text(const Scenario& scenario, const OwnNode& node) {
 }
 
 }  // namespace
-
-ScenarioInputs load_scene(const Scenario& scenario, const Clock& clock) {
-  ScenarioInputs scene{.population = load_objects(scenario, clock), .stars = nullptr};
-  check_sensors(scenario, scene.population.roster);
-  scene.stars = load_stars(scenario);
-  return scene;
-}
 
 ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs& scene,
                                  const Clock& clock, const OutlookOptions& options) {

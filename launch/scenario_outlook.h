@@ -1,21 +1,11 @@
 #pragma once
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "sensors/frames/load_scene.h"
 #include "sensors/outlook/sensor_outlook.h"
 
 namespace dmise {
-
-/// Inputs that a run reads before its first frame. All errors in them are reported before the run's
-/// directory is touched.
-struct ScenarioInputs {
-  ObjectPopulation population;
-  std::shared_ptr<const StarMap> stars;  // null: none
-};
-
-/// Throws `ConfigError` with the position of the invalid key.
-ScenarioInputs load_scene(const Scenario& scenario, const Clock& clock);
 
 /// Notes, warnings and outlooks of a scenario before it runs.
 struct ScenarioOutlook {

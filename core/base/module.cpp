@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/own_file.h"
 
 namespace dmise {
 namespace {
@@ -14,11 +15,12 @@ namespace {
 std::string path_of(const Module& module) {
   if (const char* path = std::getenv(module.environment)) return path;
   std::error_code failed;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
   const std::string file = std::string("libdmise_") + module.name + ".so";
-  const auto libraries = program.parent_path().parent_path() / "lib";
-  const auto installed = libraries / "dmise" / file;
-  return (std::filesystem::exists(installed, failed) ? installed : libraries / file).string();
+  const auto own = std::filesystem::path(own_file()).parent_path();
+  for (auto above = own; above.has_relative_path(); above = above.parent_path())
+    for (const auto& path : {above / "lib/dmise" / file, above / "lib" / file})
+      if (std::filesystem::exists(path, failed)) return path.string();
+  return (own.parent_path() / "lib" / file).string();
 }
 
 /// Signals are blocked while loading, so that threads which libraries start at that time take none.

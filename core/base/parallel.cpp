@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/cancellation.h"
+
 namespace dmise {
 
 struct Threads::Pool {
@@ -77,9 +79,11 @@ void Threads::for_ranges(std::size_t items, std::size_t grain,
   std::atomic<std::size_t> next{0};
   std::mutex error_mutex;
   std::exception_ptr error;
+  const std::atomic<bool>* cancelled = cancellation_flag();
   const auto drain = [&] {
     for (std::size_t i = next++; i < ranges; i = next++) {
       try {
+        if (cancelled && *cancelled) throw Cancelled();
         work(i * grain, std::min(items, (i + 1) * grain));
       } catch (...) {
         std::lock_guard lock(error_mutex);

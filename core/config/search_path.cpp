@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/base/own_file.h"
 #include "core/base/user_directories.h"
 
 namespace dmise {
@@ -13,8 +14,7 @@ namespace fs = std::filesystem;
 std::string home_directory() {
   if (const char* home = std::getenv("DMISE_HOME")) return home;
   std::error_code ignored;
-  for (auto dir = fs::read_symlink("/proc/self/exe", ignored).parent_path(); !dir.empty();
-       dir = dir.parent_path()) {
+  for (auto dir = fs::path(own_file()).parent_path(); !dir.empty(); dir = dir.parent_path()) {
     if (fs::is_directory(dir / "launch" / "cameras", ignored)) return dir.string();
     if (fs::is_directory(dir / "share/dmise/launch/cameras", ignored))
       return (dir / "share/dmise").string();

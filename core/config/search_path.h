@@ -4,8 +4,8 @@
 
 namespace dmise {
 
-/// Root of the installation or checkout: `$DMISE_HOME`, else found upwards from the running
-/// program.
+/// Root of the installation or checkout: `$DMISE_HOME`, else found upwards from this code's file,
+/// the running program or a module of Python.
 std::string home_directory();
 
 /// Looks for `name` as a path beside `from_file` and as given, then as a preset

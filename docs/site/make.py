@@ -24,7 +24,7 @@ CHAPTERS = (
     ("How to", ("docs/howto/design-a-sensor.md", "docs/howto/write-a-tracker.md", "docs/howto/plug-in-a-model.md",
                 "docs/howto/worked-examples.md", "docs/howto/make-a-data-set.md", "docs/howto/operate-a-network.md")),
     ("Reference", ("docs/reference/scenario.md", "docs/reference/camera.md", "docs/reference/site.md",
-                   "docs/reference/materials.md", "docs/wire.md", "docs/clients.md", "docs/exchange.md", "docs/detection.md",
+                   "docs/reference/materials.md", "docs/wire.md", "docs/python.md", "docs/clients.md", "docs/exchange.md", "docs/detection.md",
                    "docs/datasets.md", "docs/operations.md", "docs/stack.md")),
     ("Models", ("docs/models/*.md",)),
     ("Results", ("docs/accuracy.md", "docs/benchmarks.md", "docs/scaling.md", "docs/paper.md")),

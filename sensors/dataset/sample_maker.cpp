@@ -7,11 +7,10 @@
 #include "core/dataset/npy.h"
 #include "core/dataset/tar.h"
 #include "core/image/fits_file.h"
-#include "core/sim/controller.h"
 #include "core/time/iso8601.h"
-#include "nodes/environment/environment_actor.h"
-#include "orbit-node/orbit_actor.h"
+#include "orbit-node/load_objects.h"
 #include "sensors/dataset/frame_labels.h"
+#include "sensors/frames/make_frames.h"
 #include "sensors/pipeline/make_sensor.h"
 
 namespace dmise {
@@ -118,34 +117,27 @@ void SampleMaker::prepare(const Scenario& scenario) {
 }
 
 std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {
-  prepare(sample.scenario);
-  Scenario scenario = sample.scenario;
-  scenario.network.publish_states = false;  // nobody outside this process can take them
+  const Scenario& scenario = sample.scenario;
+  prepare(scenario);
   const Clock clock = make_clock(scenario);
-  Threads one(1);
-  ObjectPopulation population = load_objects(scenario, clock);
-  std::vector<std::unique_ptr<Participant>> participants;
-  participants.push_back(std::make_unique<OrbitActor>(scenario, clock, std::move(population), one));
-  participants.push_back(std::make_unique<EnvironmentActor>(scenario, clock));
   std::vector<std::unique_ptr<SensorFrames>> collected;
+  std::vector<FrameTap> taps;
   for (const SensorConfig& sensor : scenario.sensors) {
     collected.push_back(std::make_unique<SensorFrames>(sample, sensor, clock, digest_));
     SensorFrames* frames = collected.back().get();
-    PipelineSettings settings = sensor_settings(scenario, sensor.name, digest_);
-    settings.output = {};
-    settings.output.noise = true;
-    settings.object_light = [frames](const Truth& truth, const ExpectedElectronImage& light,
-                                     const ElectronImage& noise) {
-      frames->take(truth, light, noise);
+    const auto set_up = [frames](PipelineSettings& settings) {
+      settings.output.noise = true;
+      settings.object_light = [frames](const Truth& truth, const ExpectedElectronImage& light,
+                                       const ElectronImage& noise) {
+        frames->take(truth, light, noise);
+      };
     };
-    auto evaluator = std::make_unique<SensorEvaluator>(
-        settings, run_grid(scenario), stars_.at(scenario.star_catalogue_path), one);
-    evaluator->when_made([frames](const FrameProducts& frame) { frames->finish(frame); });
-    participants.push_back(std::move(evaluator));
+    taps.push_back(
+        {sensor.name, set_up, [frames](FrameProducts& frame) { frames->finish(frame); }});
   }
-  SimulationController(std::move(participants)).run(scenario.last_tick(), [](Tick) {
-    return true;
-  });
+  Threads one(1);
+  make_frames(scenario, {load_objects(scenario, clock), stars_.at(scenario.star_catalogue_path)},
+              digest_, taps, one);
   std::vector<SampleFrame> frames;
   for (const auto& sensor : collected)
     for (SampleFrame& frame : sensor->frames()) frames.push_back(std::move(frame));

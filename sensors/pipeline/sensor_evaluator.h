@@ -50,8 +50,9 @@ class SensorEvaluator : public Evaluator {
 
   /// Called between frames: true ends the step early.
   void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
-  /// `told` hears of each frame when its products are written.
-  void when_made(std::function<void(const FrameProducts&)> told) { made_ = std::move(told); }
+  /// `told` hears of each frame when its products are written. Where nobody takes the sensor's
+  /// messages, it may move from the frame what it keeps.
+  void when_made(std::function<void(FrameProducts&)> told) { made_ = std::move(told); }
   int frames_done() const { return static_cast<int>(next_frame_) - 1; }
   long detections_made() const { return detections_; }
   /// Describes the OpenGL that draws points and sky; empty when they are deposited.
@@ -83,7 +84,7 @@ class SensorEvaluator : public Evaluator {
   std::optional<CueJournal> cues_;
   bool begun_ = false;
   std::function<bool()> stop_asked_ = [] { return false; };
-  std::function<void(const FrameProducts&)> made_ = [](const FrameProducts&) {};
+  std::function<void(FrameProducts&)> made_ = [](const FrameProducts&) {};
   std::uint32_t next_frame_ = 1;
   long detections_ = 0;
   std::atomic<std::uint64_t> progress_{0};

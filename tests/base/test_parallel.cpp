@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
+
+#include "core/base/cancellation.h"
+#include "core/base/detached_work.h"
 
 namespace dmise {
 namespace {
@@ -35,6 +40,41 @@ TEST(Threads, AnExceptionComesBackAndThePoolGoesOn) {
   std::atomic<int> sum{0};
   threads.for_ranges(100, 1, [&](std::size_t, std::size_t) { ++sum; });
   EXPECT_EQ(sum, 100);
+}
+
+TEST(Threads, CancelledLoopsOfAThreadEndAndOthersGoOn) {
+  std::atomic<bool> asked = false;
+  Threads threads(3);
+  std::atomic<int> worked{0};
+  {
+    CancellationScope scope(asked);
+    EXPECT_THROW(threads.for_ranges(1000, 1,
+                                    [&](std::size_t, std::size_t) {
+                                      ++worked;
+                                      asked = true;
+                                    }),
+                 Cancelled);
+    EXPECT_LE(worked, 3);
+    std::thread([&] {
+      int sum = 0;
+      Threads(1).for_ranges(10, 1, [&](std::size_t, std::size_t) { ++sum; });
+      EXPECT_EQ(sum, 10);
+    }).join();
+  }
+  threads.for_ranges(10, 1, [&](std::size_t, std::size_t) { ++worked; });
+  EXPECT_GE(worked, 11);
+}
+
+TEST(DetachedWork, IsWaitedFor) {
+  std::atomic<bool> go = false, done = false;
+  start_detached([&] {
+    while (!go) std::this_thread::yield();
+    done = true;
+  });
+  EXPECT_FALSE(wait_for_detached(std::chrono::milliseconds(1)));
+  go = true;
+  EXPECT_TRUE(wait_for_detached(std::chrono::seconds(100)));
+  EXPECT_TRUE(done);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ LIBRARIES = {"zmq.": "ZeroMQ", "spdlog/": "spdlog", "CLI/": "CLI11", "fitsio": "
              "pugixml": "pugixml", "GeographicLib/": "GeographicLib", "glm/": "GLM", "GL/": "OpenGL", "EGL/": "EGL",
              "google/protobuf/": "Protocol Buffers", "dmise/v1/": "Protocol Buffers", "prometheus/": "prometheus-cpp",
              "zlib.h": "zlib", "zstd.h": "zstd", "sodium.h": "libsodium", "OpenImageIO/": "OpenImageIO",
-             "Eigen/": "Eigen", "unsupported/Eigen/": "Eigen", "boost/": "Boost"}
+             "nanobind/": "nanobind", "Eigen/": "Eigen", "unsupported/Eigen/": "Eigen", "boost/": "Boost"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
 
 

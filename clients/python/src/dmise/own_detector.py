@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import inspect
 import os
-import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -18,8 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import protocol
-
-CardValue = bool | int | float | str
+from .cards import CardValue, values_of
 
 
 @dataclass
@@ -103,20 +101,7 @@ def frame_of(frame: Any, counts: bytes, node: str) -> SensorFrame:
     """The frame of a request."""
     pixels = np.frombuffer(counts, "<u2").reshape(frame.rows, frame.columns)
     return SensorFrame(frame.sensor, frame.frame, frame.tick, pixels.astype(np.uint16, copy=False),
-                       dict(_value_of(card) for card in frame.cards if card[8:10] == "= "), node)
-
-
-def _value_of(card: str) -> tuple[str, CardValue]:
-    key, text = card[:8].strip(), card[10:].strip()
-    if quoted := re.match("'((?:[^']|'')*)'", text):
-        return key, quoted[1].replace("''", "'").rstrip()
-    word = text.split("/")[0].strip()
-    if word in ("T", "F"):
-        return key, word == "T"
-    try:
-        return key, int(word)
-    except ValueError:
-        return key, float(word)
+                       values_of(frame.cards), node)
 
 
 def packed(said: Any) -> Any:

@@ -1,8 +1,8 @@
-"""Records as a table of pandas."""
+"""Records as tables, of numpy and of pandas."""
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 _AXES = {"sensor_position_m", "sensor_velocity_m_per_s", "refraction_offset_m", "position_m",
          "velocity_m_per_s"}
+# Lists of numbers have three: vectors, and covariances of two quantities.
+_LENGTHS = {"camera_from_gcrs": 4}
+_VECTORS = ("_m", "_m_per_s", "_rad2", "_px2")
 
 
 def to_pandas(records: Iterable[Record]) -> "pandas.DataFrame":
@@ -27,6 +30,54 @@ def to_pandas(records: Iterable[Record]) -> "pandas.DataFrame":
     return pandas.DataFrame([_row(record) for record in records])
 
 
+class Table(np.ndarray[Any, Any]):
+    """A structured array: a row per record, a field per number or text of it, a vector per list of numbers."""
+
+    def __getitem__(self, key: Any) -> Any:
+        found = super().__getitem__(key)
+        return found.view(np.ndarray) if isinstance(found, Table) and found.dtype.names is None else found
+
+    def to_pandas(self) -> "pandas.DataFrame":
+        """A DataFrame with columns as those of `dmise.to_pandas`; needs pandas."""
+        import pandas
+
+        columns: dict[str, Any] = {}
+        for name in self.dtype.names or ():
+            values = np.asarray(self[name])
+            if values.ndim == 1:
+                columns[name] = values
+            else:
+                columns.update({f"{name}_{part}": values[:, i] for i, part in enumerate(_parts(name, values.shape[1]))})
+        return pandas.DataFrame(columns)
+
+
+def table_of(records: Sequence[Record], cls: type[Record]) -> Table:
+    """A table of records of a class, which may be none. A list of numbers that a record lacks is zeros."""
+    fields = [_field(name, records, cls()) for name in vars(cls())]
+    table = np.zeros(len(records), dtype=fields)
+    for name, *_ in fields:
+        for i, record in enumerate(records):
+            value = getattr(record, name)
+            if np.size(value):
+                table[name][i] = value
+    return table.view(Table)
+
+
+def _field(name: str, records: Sequence[Record], usual: Record) -> tuple[Any, ...]:
+    """A field of a table: its name, type and, of a list of numbers, length."""
+    value = getattr(usual, name)
+    if isinstance(value, np.ndarray):
+        return name, np.float64, (_LENGTHS.get(name) or (3 if name.endswith(_VECTORS) else 0),)
+    if isinstance(value, str):
+        return name, f"U{max([1, *(len(getattr(record, name)) for record in records)])}"
+    return name, {bool: np.bool_, int: np.int64, float: np.float64}[type(value)]
+
+
+def _parts(name: str, size: int) -> Iterable[str]:
+    """What the columns of a list of numbers are called."""
+    return "xyz" if name in _AXES else map(str, range(size))
+
+
 def _row(record: Any, prefix: str = "") -> dict[str, Any]:
     row: dict[str, Any] = {}
     for field in dataclasses.fields(record):
@@ -34,8 +85,8 @@ def _row(record: Any, prefix: str = "") -> dict[str, Any]:
         if dataclasses.is_dataclass(value):
             row.update(_row(value, name + "."))
         elif isinstance(value, np.ndarray):
-            names = "xyz" if field.name in _AXES else map(str, range(value.size))
-            row.update({f"{name}_{part}": number for part, number in zip(names, value.ravel().tolist())})
+            row.update({f"{name}_{part}": number
+                        for part, number in zip(_parts(field.name, value.size), value.ravel().tolist())})
         elif not isinstance(value, list):
             row[name] = value
             if name.endswith("_ns") and record.start_utc_of_run is not None:

@@ -1,0 +1,261 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clients/engine/arrays.h"
+#include "clients/engine/engine.h"
+#include "clients/engine/interruptible.h"
+#include "core/base/json.h"
+#include "core/config/distribution.h"
+#include "core/config/make_clock.h"
+#include "core/config/own_node_config.h"
+#include "core/config/yaml_reader.h"
+#include "core/detection/detection_json.h"
+#include "core/image/fits_file.h"
+#include "core/plan/plan_json.h"
+#include "core/time/iso8601.h"
+#include "launch/run_directory.h"
+#include "sensors/frames/frame_stream.h"
+#include "sensors/pipeline/frame_times.h"
+
+namespace nb = nanobind;
+
+namespace dmise {
+namespace {
+
+/// Inputs of a scenario, read when the first stream asks for them and shared by all.
+class SharedInputs {
+ public:
+  ScenarioInputs of(const Scenario& scenario) {
+    std::lock_guard lock(mutex_);
+    if (!inputs_) inputs_ = load_scene(scenario, make_clock(scenario));
+    return *inputs_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<ScenarioInputs> inputs_;
+};
+
+/// One frame, its clock and what is known of it.
+class MadeFrame {
+ public:
+  MadeFrame(std::unique_ptr<StreamedFrame> made, std::shared_ptr<const Clock> clock)
+      : made_(std::move(made)), clock_(std::move(clock)) {}
+
+  const FrameProducts& products() const { return made_->products; }
+  const StreamedFrame& made() const { return *made_; }
+
+  std::vector<std::string> detections() const { return lines(products().detections); }
+  std::vector<std::string> truths() const { return lines(products().truths); }
+  std::string report() const { return line(products().report); }
+  /// "{}" of a frame that was not planned.
+  std::string plan() const {
+    if (products().plan.planned.empty()) return "{}";
+    JsonWriter json;
+    write_plan(json, products().plan);
+    return json.take();
+  }
+  std::vector<std::string> cards() const {
+    return frame_file_cards(products().counts, products().header);
+  }
+  nb::bytes fits() const {
+    std::string bytes;
+    {
+      nb::gil_scoped_release without;
+      const FlagImage& flags = products().flags;
+      bytes = encode_frame(products().counts, products().header,
+                           flags.pixels.empty() ? nullptr : &flags);
+    }
+    return nb::bytes(bytes.data(), bytes.size());
+  }
+  bool has_layers() const { return !made_->objects.pixels.empty(); }
+
+  /// Expected electrons of the sky, with Sun, Moon and Earth.
+  std::vector<float> sky() const { return times_exposure(products().planes.background.pixels); }
+  /// Expected electrons of stars: of all sources less those of objects.
+  std::vector<float> stars() const {
+    std::vector<float> light = times_exposure(products().planes.sources.pixels);
+    for (std::size_t i = 0; i < light.size(); ++i)
+      light[i] = std::max(0.0f, light[i] - made_->objects.pixels[i]);
+    return light;
+  }
+
+ private:
+  template <class Product>
+  std::string line(const Product& product) const {
+    return to_json(product, [this](SimTime t) { return format_utc(clock_->utc(t), 6); });
+  }
+  template <class Product>
+  std::vector<std::string> lines(const std::vector<Product>& products) const {
+    std::vector<std::string> texts;
+    for (const Product& product : products) texts.push_back(line(product));
+    return texts;
+  }
+  std::vector<float> times_exposure(std::vector<float> rates) const {
+    for (float& rate : rates) rate = float(rate * products().header.exposure_s);
+    return rates;
+  }
+
+  std::unique_ptr<StreamedFrame> made_;
+  std::shared_ptr<const Clock> clock_;
+};
+
+/// Frames of a simulation, one at a time.
+class Stream {
+ public:
+  Stream(StreamSource source, StreamOptions options, std::shared_ptr<const Clock> clock)
+      : stream_(std::move(source), std::move(options)), clock_(std::move(clock)) {}
+
+  /// Null after the last frame.
+  std::unique_ptr<MadeFrame> next() {
+    stream_.ask();
+    wait_interruptibly([this](auto time) { return stream_.wait(time); },
+                       [this] { stream_.stop(); });
+    auto made = of_scenario([this] { return stream_.take(); });
+    return made ? std::make_unique<MadeFrame>(std::move(made), clock_) : nullptr;
+  }
+  void stop() { stream_.stop(); }
+
+ private:
+  FrameStream stream_;
+  std::shared_ptr<const Clock> clock_;
+};
+
+class Simulation {
+ public:
+  Simulation(const YamlValue& root, std::optional<std::uint64_t> seed) {
+    refuse_distributions(root, "dmise dataset draws a value for each seed");
+    auto scenario = std::make_shared<Scenario>(read_scenario(root));
+    refuse_own_nodes(scenario->own_nodes, "the engine in Python");
+    if (seed) scenario->seed = *seed;
+    scenario->network.publish_states = false;  // as of a run in one process
+    scenario_ = std::move(scenario);
+    clock_ = std::make_shared<const Clock>(make_clock(*scenario_));
+  }
+
+  const Scenario& scenario() const { return *scenario_; }
+
+  std::unique_ptr<Stream> frames(const std::vector<std::string>& sensors, int threads,
+                                 bool layers) {
+    StreamOptions options{.sensors = sensors, .threads = threads, .layers = layers};
+    if (threads < 1 || threads > 1024)
+      throw ConfigError("threads: must be in 1..1024, got " + std::to_string(threads));
+    if (sensors.empty())
+      for (const auto& sensor : scenario_->sensors) options.sensors.push_back(sensor.name);
+    for (const auto& sensor : sensors) sensor_named(*scenario_, sensor);
+    StreamSource source{
+        .scenario = scenario_,
+        .scene = [inputs = inputs_, scenario = scenario_] { return inputs->of(*scenario); },
+        .digest = digest()};
+    return std::make_unique<Stream>(std::move(source), std::move(options), clock_);
+  }
+
+  std::string digest() {
+    if (digest_.empty()) digest_ = scenario_digest(*scenario_);
+    return digest_;
+  }
+
+  std::vector<std::string> sensors() const {
+    std::vector<std::string> names;
+    for (const auto& sensor : scenario_->sensors) names.push_back(sensor.name);
+    return names;
+  }
+  std::uint32_t count_of(const std::string& sensor) const {
+    return frames_within(sensor_named(*scenario_, sensor), scenario_->duration);
+  }
+  std::string start_utc() const { return format_utc(clock_->utc({0}), 6); }
+
+ private:
+  std::shared_ptr<const Scenario> scenario_;
+  std::shared_ptr<const Clock> clock_;
+  std::shared_ptr<SharedInputs> inputs_ = std::make_shared<SharedInputs>();
+  std::string digest_;
+};
+
+template <class Member>
+auto text_of(Member member) {
+  return [member](const MadeFrame& frame) { return frame.products().report.*member; };
+}
+
+nb::object image_of(nb::handle_t<MadeFrame> self, const auto& image) {
+  return array_in(image.pixels.data(), {std::size_t(image.rows), std::size_t(image.columns)}, self);
+}
+
+nb::object layer_of(const MadeFrame& frame, std::vector<float> light) {
+  const CountImage& counts = frame.products().counts;
+  return array_of(std::move(light), {std::size_t(counts.rows), std::size_t(counts.columns)});
+}
+
+void add_frame(nb::module_& module) {
+  nb::class_<MadeFrame>(module, "Frame")
+      .def_prop_ro("sensor", text_of(&FrameReport::sensor))
+      .def_prop_ro("number", text_of(&FrameReport::frame))
+      .def_prop_ro("has_layers", &MadeFrame::has_layers)
+      .def("counts",
+           [](nb::handle_t<MadeFrame> self) {
+             return image_of(self, nb::cast<const MadeFrame&>(self).products().counts);
+           })
+      .def("labels",
+           [](nb::handle_t<MadeFrame> self) {
+             return image_of(self, nb::cast<const MadeFrame&>(self).made().labels);
+           })
+      .def("objects",
+           [](nb::handle_t<MadeFrame> self) {
+             return image_of(self, nb::cast<const MadeFrame&>(self).made().objects);
+           })
+      .def("sky", [](const MadeFrame& frame) { return layer_of(frame, frame.sky()); })
+      .def("stars", [](const MadeFrame& frame) { return layer_of(frame, frame.stars()); })
+      .def("cards", &MadeFrame::cards)
+      .def("fits", &MadeFrame::fits)
+      .def("detections", &MadeFrame::detections)
+      .def("truths", &MadeFrame::truths)
+      .def("report", &MadeFrame::report)
+      .def("plan", &MadeFrame::plan);
+}
+
+}  // namespace
+
+void add_simulation(nb::module_& module) {
+  add_frame(module);
+  nb::class_<Stream>(module, "Stream", nb::is_weak_referenceable())
+      .def("next", &Stream::next)
+      .def("stop", &Stream::stop);
+  nb::class_<Simulation>(module, "Simulation")
+      .def_static("of_file",
+                  [](const std::string& path, std::optional<std::uint64_t> seed) {
+                    return of_scenario(
+                        [&] { return std::make_unique<Simulation>(YamlValue::load(path), seed); });
+                  })
+      .def_static(
+          "of_text",
+          [](const std::string& text, const std::string& name, std::optional<std::uint64_t> seed) {
+            return of_scenario(
+                [&] { return std::make_unique<Simulation>(YamlValue::parse(text, name), seed); });
+          })
+      .def("frames",
+           [](Simulation& simulation, const std::vector<std::string>& sensors, int threads,
+              bool layers) {
+             return of_scenario([&] { return simulation.frames(sensors, threads, layers); });
+           })
+      .def_prop_ro("sensors", &Simulation::sensors)
+      .def("count_of", &Simulation::count_of)
+      .def_prop_ro("digest", &Simulation::digest)
+      .def_prop_ro("start_utc", &Simulation::start_utc)
+      .def_prop_ro("duration_s",
+                   [](const Simulation& s) { return s.scenario().duration.seconds(); })
+      .def_prop_ro("seed", [](const Simulation& s) { return s.scenario().seed; })
+      .def_prop_ro("warnings", [](const Simulation& s) { return s.scenario().warnings; });
+}
+
+}  // namespace dmise

@@ -1,0 +1,14 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "core/sky/star_map.h"
+
+namespace dmise {
+
+/// Loads the catalogue of stars of that name, or a file, through the user's cache; null for "none",
+/// the default for "". Throws `ConfigError` that begins with `option`.
+std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name,
+                                                   const std::string& option = "--catalogue");
+
+}  // namespace dmise

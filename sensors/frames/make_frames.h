@@ -1,0 +1,26 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sensors/frames/load_scene.h"
+#include "sensors/pipeline/frame_pipeline.h"
+
+namespace dmise {
+
+/// A sensor whose frames are made in this process, without files, and who takes them.
+struct FrameTap {
+  std::string sensor;
+  /// Called once, before the first frame; at first no plane but the counts is made.
+  std::function<void(PipelineSettings&)> set_up;
+  /// Called with each frame in order; may move from it what it keeps.
+  std::function<void(FrameProducts&)> made;
+};
+
+/// Makes all frames of the sensors of `taps`, as a run of the scenario does; `digest` goes into
+/// their headers. Throws `ConfigError` for a sensor that is cued, which needs the detections of
+/// all sensors, and what a run throws.
+void make_frames(Scenario scenario, ScenarioInputs scene, const std::string& digest,
+                 const std::vector<FrameTap>& taps, Threads& threads);
+
+}  // namespace dmise
