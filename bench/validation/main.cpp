@@ -1,4 +1,9 @@
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -8,7 +13,7 @@
 #include "bench/validation/validation_page.h"
 #include "core/base/error.h"
 #include "core/base/paths.h"
-#include "core/base/regular_file.h"
+#include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/search_path.h"
 #include "nodes/runtime/program/command_line.h"
@@ -32,9 +37,55 @@ std::string data_of(const Options& options) {
   return home_directory() + "/../shared/data/validation";
 }
 
+bool wanted(const Options& options, const char* name) {
+  return options.names.empty() || std::ranges::find(options.names, name) != options.names.end();
+}
+
+/// The script of places, in a source tree or where it is installed.
+std::string places_script() {
+  for (const char* folder : {"/bench/validation", "/validation"})
+    if (const std::string path = home_directory() + folder + "/places.py"; path_exists(path))
+      return path;
+  throw ConfigError(home_directory() + ": there is no validation/places.py; DMISE_HOME is wrong");
+}
+
+void run_program(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::fflush(stdout);
+  pid_t pid = 0;
+  if (posix_spawnp(&pid, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0)
+    throw Error(words[0] + ": can't be started");
+  int status = 0;
+  waitpid(pid, &status, 0);
+  if (status != 0) throw Error(words[1] + ": failed");
+}
+
+/// Prints the figures of places; returns their section of the page.
+std::string compare_places(const Options& options, const std::string& data) {
+  const fs::path section =
+      fs::temp_directory_path() / ("dmise-validate-" + std::to_string(getpid()) + ".md");
+  const fs::path dmise = fs::read_symlink("/proc/self/exe").parent_path() / "dmise";
+  const char* debian = "/usr/bin/python3";  // has python3-erfa, python3-numpy and python3-sgp4
+  std::vector<std::string> words{path_exists(debian) ? debian : "python3",
+                                 places_script(),
+                                 dmise.string(),
+                                 data,
+                                 "--every",
+                                 std::to_string(options.every),
+                                 "--section",
+                                 section.string()};
+  if (options.json) words.push_back("--json");
+  run_program(std::move(words));
+  const std::string text = read_text_file(section.string());
+  remove_file(section.string());
+  return text;
+}
+
 /// docs/validation.md of a source tree, else validation.md.
 std::string page_of(const Options& options) {
-  if (!options.page.empty() || options.json) return options.page;
+  if (!options.page.empty() || options.json || !options.names.empty()) return options.page;
   return fs::is_directory("docs") ? "docs/validation.md" : "validation.md";
 }
 
@@ -60,7 +111,8 @@ void print_half(const std::string& name, const BrightnessFigures& f, const Famil
   print("_within_difference", f.within_difference_mag, 0.0, 0.0);
 }
 
-void write_page(const std::string& page, const std::vector<FamilyBrightness>& families) {
+void write_page(const std::string& page, const std::vector<FamilyBrightness>& families,
+                const std::string& places) {
   const fs::path path = page;
   const std::string folder = path.stem().string();
   const fs::path beside = path.parent_path() / folder;
@@ -68,21 +120,23 @@ void write_page(const std::string& page, const std::vector<FamilyBrightness>& fa
   for (const auto& family : families)
     write_file_whole((beside / (family.model + ".svg")).string(),
                      chart_svg(difference_chart(family)));
-  write_file_whole(page, validation_page(families, folder));
+  write_file_whole(page, validation_page(families, folder) + places);
 }
 
 void validate(const Options& options) {
   const std::string data = data_of(options);
   if (!fs::is_directory(data))
     throw ConfigError(data + ": there are no measurements (--data DIR, or DMISE_DATA)");
-  const auto families = compare_brightness(data, options.every);
+  std::vector<FamilyBrightness> families;
+  if (wanted(options, "brightness")) families = compare_brightness(data, options.every);
   for (const auto& family : families) {
     print_half(family.model + "_fitted", family.fitted, family, false, options.json);
     print_half(family.model + "_held_out", family.held_out, family, true, options.json);
   }
   if (!options.csv.empty()) write_file_whole(options.csv, brightness_csv(families));
+  const std::string places = wanted(options, "places") ? compare_places(options, data) : "";
   if (const std::string page = page_of(options); !page.empty()) {
-    write_page(page, families);
+    write_page(page, families, places);
     if (!options.json) std::printf("%s\n", page.c_str());
   }
 }
@@ -98,14 +152,14 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", dmise::version_text("dmise-validate"));
   dmise::Options options;
   app.add_option("names", options.names, "what to compare (all)")
-      ->check(dmise::one_of({"brightness"}));
+      ->check(dmise::one_of({"brightness", "places"}));
   app.add_option(
       "--data", options.data,
       "directory of the measurements ($DMISE_DATA/validation, else shared/data/validation "
       "beside the checkout)");
   app.add_option("--page", options.page,
-                 "page to write, its charts in a folder beside it (docs/validation.md; with --json "
-                 "none)");
+                 "page to write, its charts in a folder beside it (docs/validation.md; with names "
+                 "or --json none)");
   app.add_option("--csv", options.csv, "file: each measurement, its prediction and its geometry");
   app.add_option("--every", options.every, "take every N-th measurement")
       ->capture_default_str()

@@ -15,6 +15,34 @@ constexpr double phase_bin_deg = 5.0, widest_mag = 2.5;
 constexpr std::size_t most_points = 1500, least_in_bin = 10;
 constexpr Colour grey{190, 190, 190}, blue{31, 119, 180}, orange{255, 127, 14};
 
+constexpr const char* introduction = R"(# Validation
+
+What the models give beside what the sky gave. `dmise validate` writes this page from measurements that are not part of the
+repository (`--data DIR`, else `$DMISE_DATA/validation`); it needs no network. Half of each set was not seen by the fit of the
+model that it judges.
+)";
+
+constexpr const char* about_brightness = R"(
+## Brightness of families of satellites
+
+A model is a shape with effective surfaces and an attitude law (`dmise list models`, [objects](models/objects.md#models-of-families)). The light of
+its facets for the Sun, the observer and the attitude of each measurement is compared with the magnitude that was measured. Single
+exposures state height, elevation and azimuth. Light curves state range and phase, and the circular orbit of the family's
+inclination that agrees with both (to 0.5 km of range) says where the satellite was. AB magnitudes in V are compared with the AB magnitude
+of sunlight of the predicted V (the same photons over 3631 Jy); MMT-9's, which are of no filter and calibrated to V, with V itself. All are above the
+atmosphere.
+
+- **median**: measured less predicted; above 0 the model is too bright.
+- **scatter**: the standard deviation of that. Satellites of a family differ, so no model of the family brings it to 0.
+- **of a phase law**: the scatter that a parabola in phase leaves, fitted to the fitted half alone: what is known without a shape.
+- **between tracks**: the standard deviation of the tracks' medians (a track of single exposures is a night).
+- **within tracks**: the standard deviation of means over a second about their track's mean, the median over tracks. The models are
+  smoother than the satellites: boxes lack the small parts that glint and fade within a minute.
+
+This does not show: colours (all is in V), glints shorter than a second, light below 20 deg of elevation, phases and seasons that
+were not measured, or satellites with visors.
+)";
+
 ChartAxis axis(const std::string& label, double least, double most, double step) {
   ChartAxis axis{.label = label, .least = least, .most = most};
   for (double at = std::ceil(least / step) * step; at <= most + 1e-9; at += step)
@@ -95,30 +123,8 @@ Chart difference_chart(const FamilyBrightness& family) {
 
 std::string validation_page(const std::vector<FamilyBrightness>& families,
                             const std::string& pictures) {
-  std::string text = R"(# Validation
-
-What the models give beside what the sky gave. `dmise validate` writes this page from measurements that are not part of the
-repository (`--data DIR`, else `$DMISE_DATA/validation`); it needs no network. Half of each set was not seen by the fit of the
-model that it judges.
-
-## Brightness of families of satellites
-
-A model is a shape with effective surfaces and an attitude law (`dmise list models`, [objects](models/objects.md#models-of-families)). The light of
-its facets for the Sun, the observer and the attitude of each measurement is compared with the magnitude that was measured. Single
-exposures state height, elevation and azimuth. Light curves state range and phase, and the circular orbit of the family's
-inclination that agrees with both (to 0.5 km of range) says where the satellite was. AB magnitudes in V are compared with the AB magnitude
-of sunlight of the predicted V (the same photons over 3631 Jy); MMT-9's, which are of no filter and calibrated to V, with V itself. All are above the
-atmosphere.
-
-- **median**: measured less predicted; above 0 the model is too bright.
-- **scatter**: the standard deviation of that. Satellites of a family differ, so no model of the family brings it to 0.
-- **of a phase law**: the scatter that a parabola in phase leaves, fitted to the fitted half alone: what is known without a shape.
-- **between tracks**: the standard deviation of the tracks' medians (a track of single exposures is a night).
-- **within tracks**: the standard deviation of means over a second about their track's mean, the median over tracks.
-
-This does not show: colours (all is in V), glints shorter than a second, light below 20 deg of elevation, phases and seasons that
-were not measured, or satellites with visors.
-)";
+  std::string text = introduction;
+  if (!families.empty()) text += about_brightness;
   for (const auto& family : families) text += section(family, pictures);
   return text;
 }
