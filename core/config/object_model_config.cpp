@@ -32,7 +32,7 @@ const Section& models_section() {
       "models",
       "Models of objects of catalogues, the first that fits.",
       {},
-      Key{"PATTERN", form::text(),
+      Key{"^.+$", form::text(),
           "A shipped model (`dmise list models`) or a file of one, for the objects whose name or "
           "number fits the pattern: *, ? and [..] as of a shell."}};
   return section;
