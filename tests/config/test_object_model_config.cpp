@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/base/paths.h"
 #include "core/base/whole_file.h"
 #include "core/config/object_config.h"
 #include "core/config/yaml_reader.h"
@@ -79,7 +80,7 @@ TEST(ObjectModels, GiveAnObjectItsLooks) {
       read("- {name: x, " + fixed + ", model: oneweb, attitude: sun_tracking}").own.at(0);
   EXPECT_TRUE(std::holds_alternative<SunYawAttitude>(turned.attitude->model));
   EXPECT_EQ(complaint("- {name: x, " + fixed + ", model: oneweb, geometry: {model: box}}"),
-            "s.yaml:2:76: objects[0].geometry: the model has it");
+            "s.yaml:2:78: objects[0].geometry: the model has it");
 }
 
 TEST(ObjectModels, SayWhereAndWhy) {
@@ -94,10 +95,11 @@ TEST(ObjectModels, SayWhereAndWhy) {
       << unknown;
   EXPECT_EQ(complaint("- {catalogue: demo, models: shipped}\n- {catalogue: demo, models: shipped}"),
             "s.yaml:3:29: objects[1].models: another catalogue states models, which are of all");
-  const std::string path = testing::TempDir() + "/told.yaml";
+  const std::string path = testing::TempDir() + "told.yaml";
   write_file_whole(path, "source: nobody\nattitude: {node: gnc}\ngeometry: {model: sphere}\n");
   EXPECT_EQ(complaint("- {catalogue: demo, models: {A: " + path + "}}"),
             path + ":2:11: attitude: must be nadir, sun_tracking, inertial or spinning");
+  remove_file(path);
 }
 
 // A catalogue without models has the digest that it had before there were any.
