@@ -123,8 +123,7 @@ std::string effects_text(const SensorConfig& sensor, const SceneFacts& scene) {
 SceneFacts facts_of(const Scenario& scenario, const SensorConfig& sensor, bool has_stars) {
   SceneFacts scene = scene_facts(sensor);
   scene.stars = has_stars;
-  scene.shapes = std::ranges::any_of(
-      scenario.own_objects, [](const OwnObject& object) { return object.geometry.has_value(); });
+  scene.shapes = have_shapes(scenario.objects, scenario.own_objects);
   return scene;
 }
 

@@ -11,6 +11,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/effect_list.h"
 #include "core/config/material_config.h"
+#include "core/config/object_model_config.h"
 #include "core/config/search_path.h"
 #include "core/config/star_catalogues.h"
 #include "core/config/yaml_reader.h"
@@ -72,6 +73,15 @@ void list_materials() {
     print(name, material.source);
 }
 
+void list_models() {
+  for (const auto& name : names_of("models")) {
+    const auto model = shipped_object_model(name);
+    std::string names;
+    for (const auto& pattern : model->names) names += " " + pattern;
+    print(name, model->source + (names.empty() ? "" : " Names:" + names));
+  }
+}
+
 void list_catalogues() {
   const auto show = [](const char* name, const char* use, const char* what, const char* file,
                        const char* remedy = "DMISE_HOME is wrong") {
@@ -92,13 +102,15 @@ void list_effects() { std::printf("%s", effects_markdown().c_str()); }
 
 void add_list_command(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "list", "Names for scenarios: cameras, sites, filters, materials, catalogues, effects");
+      "list",
+      "Names for scenarios: cameras, sites, filters, materials, models, catalogues, effects");
   command->require_subcommand(1);
   const std::map<std::string, std::pair<std::string, void (*)()>> kinds{
       {"cameras", {"for sensors[].camera", list_cameras}},
       {"sites", {"for sensors[].site", list_sites}},
       {"filters", {"for a camera's band", list_filters}},
       {"materials", {"for objects[].geometry", list_materials}},
+      {"models", {"for objects[].models and objects[].model", list_models}},
       {"catalogues", {"for objects[].catalogue and stars.catalogue", list_catalogues}},
       {"effects", {"for effects, as a table in Markdown", list_effects}}};
   for (const auto& [name, kind] : kinds)

@@ -43,6 +43,7 @@ void add_clock_command(CLI::App& app);
 void add_survey_command(CLI::App& app);
 void add_tradeoff_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
+void add_validate_command(CLI::App& app);
 void add_schema_command(CLI::App& app);
 void add_manual_commands(CLI::App& app);  // man, completion
 

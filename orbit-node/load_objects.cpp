@@ -51,7 +51,10 @@ auto at_key(const std::string& where, const auto& read) {
 class Loader {
  public:
   Loader(const Scenario& scenario, const Clock& clock)
-      : scenario_(scenario), clock_(clock), start_(clock.utc({0})) {
+      : scenario_(scenario),
+        models_(models_of(scenario.objects)),
+        clock_(clock),
+        start_(clock.utc({0})) {
     population_.ellipsoid = scenario.earth.ellipsoid;
     for (const auto& object : scenario.own_objects) taken_.insert(object.catalogue_number);
   }
@@ -119,11 +122,15 @@ class Loader {
       const DiffuseSphere sphere = known == facts.facts.end()
                                        ? source.sphere
                                        : sphere_of(known->second, source.sphere).sphere;
+      const ObjectModel* model = models_.of(e.name, e.catalogue_number);
+      if (model)
+        population_.attitudes.push_back({population_.roster.objects.size(), model->attitude.model});
       population_.roster.objects.push_back({.catalogue_number = e.catalogue_number,
                                             .name = e.name,
                                             .designator = e.designator,
                                             .sphere = sphere,
-                                            .element_age_s = aged(element_age_days(e, start_))});
+                                            .element_age_s = aged(element_age_days(e, start_)),
+                                            .panel = axes_of(model ? model->panel : std::nullopt)});
       population_.elements.push_back(e);
     }
     if (of_earlier > 0)
@@ -203,6 +210,7 @@ class Loader {
   }
 
   const Scenario& scenario_;
+  const ObjectModels& models_;
   const Clock& clock_;
   const Utc start_;
   ObjectPopulation population_;

@@ -1,10 +1,12 @@
 #include "core/config/geometry_config.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/base/units.h"
 #include "core/config/material_config.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
@@ -32,6 +34,13 @@ std::vector<double> sizes(YamlMap& map, std::string_view key, std::size_t count,
   return all;
 }
 
+/// The surfaces that are fitted to the brightness of whole satellites.
+const MaterialLibrary& effective_surfaces() {
+  static const std::string path = find_preset("materials", "effective", "");
+  static const MaterialLibrary library = path.empty() ? MaterialLibrary() : MaterialLibrary(path);
+  return library;
+}
+
 class Reader {
  public:
   Reader(YamlMap& map, const MaterialLibrary& library) : map_(map), library_(library) {}
@@ -49,8 +58,9 @@ class Reader {
     }
     if (name == "box-wing") return wings();
     if (name == "starlink-like")
-      return starlink_like(material("chassis", "starlink-chassis"),
-                           material("front", "starlink-array"), material("back", "starlink-array"));
+      return starlink_like(material("chassis", "starlink-v1.5-chassis"),
+                           material("front", "starlink-v1.5-array"),
+                           material("back", "starlink-v1.5-array"));
     const auto size = sizes(map_, "size_m", 3, {1.0, 1.0, 1.0});
     return box({size[0], size[1], size[2]}, material("material"));
   }
@@ -63,18 +73,29 @@ class Reader {
     size.wing_length_m = map_.number_or("wing_length_m", size.wing_length_m);
     size.wing_width_m = map_.number_or("wing_width_m", size.wing_width_m);
     size.gap_m = map_.number_or("gap_m", size.gap_m);
-    return box_wing(size, material("body", "kapton"), material("front", "silicon-cell"),
-                    material("back", "white-paint"));
+    const Material body_material = material("body", "kapton");
+    const auto facing_z = map_.find("body_z");
+    return box_wing(size, body_material, material("front", "silicon-cell"),
+                    material("back", "white-paint"),
+                    facing_z ? library_.require(*facing_z) : body_material);
   }
 
   Material material(std::string_view key, std::string_view otherwise = "grey") {
     if (const auto value = map_.find(key)) return library_.require(*value);
-    return library_.find(otherwise).value_or(Material{});
+    if (const auto found = library_.find(otherwise)) return *found;
+    return effective_surfaces().find(otherwise).value_or(Material{});
   }
 
   YamlMap& map_;
   const MaterialLibrary& library_;
 };
+
+void turn_about_z(Mesh& mesh, HingedPanel& panel, double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  const auto turn = [&](Vec<Body>& v) { v = {c * v.x - s * v.y, s * v.x + c * v.y, v.z}; };
+  for (auto& v : mesh.vertex_m) turn(v);
+  for (Vec<Body>* v : {&panel.axes.hinge, &panel.axes.normal, &panel.hinge_m}) turn(*v);
+}
 
 std::string digest_of(const Mesh& mesh, bool with_panel) {
   JsonWriter json;
@@ -126,6 +147,8 @@ const Section& geometry_section() {
                 "A model, in place of the file."),
        optional("materials", form::text(), "A file of materials.", "the shipped library"),
        optional("scale", form::above(0.0, 1e6), "Factor of all lengths.", "1"),
+       optional("yaw_deg", form::number(-360.0, 360.0),
+                "Turns the shape and its panel about z, from x to y [deg].", "0"),
        optional("size_m", sizes(3) | sizes(2),
                 "Lengths of a box along x, y, z [m], or of a plate along x, y.", "1 each"),
        optional("radius_m", size(), "Radius of a sphere or cylinder [m].", "1"),
@@ -142,8 +165,12 @@ const Section& geometry_section() {
                 "by the model"),
        optional("back", form::text(), "Material of their other side.", "by the model"),
        optional("body", form::text(), "Material of the body of a box-wing.", "kapton"),
+       optional("body_z", form::text(),
+                "Material of the side of the body of a box-wing that faces z, the Earth in nadir "
+                "attitude.",
+                "that of the body"),
        optional("chassis", form::text(), "Material of the chassis of a starlink-like satellite.",
-                "starlink-chassis")}};
+                "starlink-v1.5-chassis")}};
   return section;
 }
 
@@ -172,6 +199,8 @@ GeometryConfig read_geometry(const YamlValue& value, bool with_panel) {
   const double scale = map.number_or("scale", 1.0);
   mesh = scaled(std::move(mesh), scale);
   geometry.panel.hinge_m = geometry.panel.hinge_m * scale;
+  if (const double yaw_deg = map.number_or("yaw_deg", 0.0); yaw_deg != 0.0)
+    turn_about_z(mesh, geometry.panel, yaw_deg * deg);
   map.done();
   geometry.digest = digest_of(mesh, with_panel);
   geometry.mesh = std::make_shared<const Mesh>(std::move(mesh));

@@ -28,7 +28,11 @@ const Section& source_section() {
                     "element sets beside the scenario."),
            optional("facts", form::text(), "A CSV file of sizes and albedos of known objects."),
            optional("only", form::list(form::text()),
-                    "Numbers or names of the objects to take; without it all are taken.")},
+                    "Numbers or names of the objects to take; without it all are taken."),
+           optional("models", object_models_forms(),
+                    "Models of families of objects: `shipped`, by the names that each model has, "
+                    "or patterns of names and numbers with their models. They are of the objects "
+                    "of all catalogues; the others are diffuse spheres.")},
           sphere_keys())};
   return section;
 }
@@ -46,7 +50,10 @@ const Section& own_section() {
                     "How it is turned: towards the Earth, the Sun, or as given."),
            optional("panel", form::map(panel_section),
                     "The panel of its geometry that faces the Sun."),
-           optional("geometry", form::map(geometry_section), "Its shape; needs an attitude.")},
+           optional("geometry", form::map(geometry_section), "Its shape; needs an attitude."),
+           optional("model", form::text(),
+                    "A shipped model (`dmise list models`) or a file of one, in place of geometry "
+                    "and panel. Its attitude holds unless the object has one.")},
           sphere_keys())};
   return section;
 }
@@ -82,8 +89,29 @@ ObjectSource read_object_source(const YamlValue& value) {
     }
     if (source.only.empty()) only->fail("must name an object; without it all are taken", false);
   }
+  if (const auto models = map.find("models")) source.models = read_object_models(*models);
   map.done();
   return source;
+}
+
+/// Reads what a model may give: attitude, panel, geometry.
+void read_appearance(YamlMap& map, OwnObject& object) {
+  if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
+  const auto panel = map.find("panel"), geometry = map.find("geometry"), model = map.find("model");
+  if (model) {
+    for (const auto& value : {panel, geometry})
+      if (value) value->fail("the model has it", false);
+    const auto known = read_object_model(*model);
+    if (!object.attitude) object.attitude = known->attitude;
+    object.geometry = known->geometry;
+    object.panel = known->panel;
+    object.model_path = known->path;
+    return;
+  }
+  for (const auto& value : {panel, geometry})
+    if (value && !object.attitude) value->fail("needs an attitude", false);
+  if (geometry) object.geometry = read_geometry(*geometry, panel.has_value());
+  if (panel) object.panel = read_panel(*panel, object.geometry ? &*object.geometry : nullptr);
 }
 
 OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthConfig& earth) {
@@ -97,12 +125,7 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
   if (const auto number = map.find("catalogue_number"))
     object.catalogue_number = static_cast<std::uint32_t>(number->integer());
   object.motion = read_motion(map.require("motion"), start, object.name, earth);
-  if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
-  const auto panel = map.find("panel"), geometry = map.find("geometry");
-  for (const auto& value : {panel, geometry})
-    if (value && !object.attitude) value->fail("needs an attitude", false);
-  if (geometry) object.geometry = read_geometry(*geometry, panel.has_value());
-  if (panel) object.panel = read_panel(*panel, object.geometry ? &*object.geometry : nullptr);
+  read_appearance(map, object);
   object.sphere = read_sphere(map);
   map.done();
   if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))
@@ -111,6 +134,19 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
 }
 
 }  // namespace
+
+const ObjectModels& models_of(const std::vector<ObjectSource>& catalogues) {
+  static const ObjectModels none;
+  for (const auto& source : catalogues)
+    if (!source.models.empty()) return source.models;
+  return none;
+}
+
+bool have_shapes(const std::vector<ObjectSource>& catalogues, const std::vector<OwnObject>& own) {
+  return !models_of(catalogues).empty() || std::ranges::any_of(own, [](const OwnObject& object) {
+    return object.geometry.has_value();
+  });
+}
 
 Forms objects_forms() { return form::list(form::map(source_section) | form::map(own_section)); }
 
@@ -121,7 +157,10 @@ ObjectsConfig read_objects(const YamlValue& value, const Utc& start, const Earth
   for (const auto& entry : value.list()) {
     YamlMap map(entry);
     if (map.find("catalogue")) {
+      const bool stated = !models_of(objects.catalogues).empty();
       objects.catalogues.push_back(read_object_source(entry));
+      if (stated && !objects.catalogues.back().models.empty())
+        map.require("models").fail("another catalogue states models, which are of all", false);
       continue;
     }
     if (!map.find("name") && !map.find("motion"))

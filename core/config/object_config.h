@@ -7,6 +7,7 @@
 #include "core/config/attitude_config.h"
 #include "core/config/geometry_config.h"
 #include "core/config/motion_config.h"
+#include "core/config/object_model_config.h"
 #include "core/config/panel_config.h"
 #include "core/config/section.h"
 #include "core/photometry/diffuse_sphere.h"
@@ -25,6 +26,7 @@ struct ObjectSource {
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
   std::string where;                    // `file:line:column: objects[0].catalogue`, for messages
   std::vector<std::string> only_where;  // likewise of each name
+  ObjectModels models;                  // of the objects of all catalogues of the scenario
 };
 
 /// An object of the scenario: `{name: inspector, motion: {..}, attitude: nadir}`.
@@ -36,7 +38,8 @@ struct OwnObject {
   std::optional<AttitudeConfig> attitude;
   std::optional<HingedPanel> panel;  // of the geometry, where there is one
   std::optional<GeometryConfig> geometry;
-  DiffuseSphere sphere;  // without a geometry
+  DiffuseSphere sphere;         // without a geometry
+  std::string model_path = {};  // of the model that gave attitude, panel and geometry; may be empty
 };
 
 /// How a node of the user's moves or turns an object; null: none does.
@@ -51,6 +54,12 @@ inline const NodeAttitude* attitude_by_node(const OwnObject& object) {
 /// First catalogue number assigned to objects without one, in the scenario's order: products
 /// identify objects by number, and catalogues stay below.
 inline constexpr std::uint32_t first_own_number = 990'000'001;
+
+/// The models of the scenario's objects of catalogues: those of the catalogue that states them.
+const ObjectModels& models_of(const std::vector<ObjectSource>& catalogues);
+
+/// Whether objects have a shape.
+bool have_shapes(const std::vector<ObjectSource>& catalogues, const std::vector<OwnObject>& own);
 
 struct ObjectsConfig {
   std::vector<ObjectSource> catalogues;

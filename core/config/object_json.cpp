@@ -61,6 +61,23 @@ struct AttitudeWriter {
   void operator()(const NodeAttitude& a) const { json.field("attitude_node", a.node); }
 };
 
+void write_panel(JsonWriter& json, const HingedPanel& panel, bool with_geometry) {
+  write(json, "panel_hinge", panel.axes.hinge);
+  write(json, "panel_normal", panel.axes.normal);
+  if (with_geometry) write(json, "panel_hinge_m", panel.hinge_m);
+}
+
+void write_models(JsonWriter& json, const ObjectModels& models) {
+  json.key("models").begin_array();
+  for (const auto& [pattern, model] : models.rules()) {
+    json.begin_object().field("pattern", pattern).field("geometry", model->geometry.digest);
+    std::visit(AttitudeWriter{json}, model->attitude.model);
+    if (model->panel) write_panel(json, *model->panel, true);
+    json.end_object();
+  }
+  json.end_array();
+}
+
 void write_own(JsonWriter& json, const OwnObject& object) {
   json.begin_object().field("name", object.name);
   json.field("catalogue_number", object.catalogue_number);
@@ -68,11 +85,7 @@ void write_own(JsonWriter& json, const OwnObject& object) {
   std::visit(MotionWriter{json}, object.motion.model);
   if (object.attitude) std::visit(AttitudeWriter{json}, object.attitude->model);
   if (object.geometry) json.field("geometry", object.geometry->digest);
-  if (object.panel) {
-    write(json, "panel_hinge", object.panel->axes.hinge);
-    write(json, "panel_normal", object.panel->axes.normal);
-    if (object.geometry) write(json, "panel_hinge_m", object.panel->hinge_m);
-  }
+  if (object.panel) write_panel(json, *object.panel, object.geometry.has_value());
   json.end_object();
 }
 
@@ -83,7 +96,9 @@ void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues
   json.key("objects").begin_array();
   for (const auto& source : catalogues) {
     json.begin_object().field("catalogue", source.named).field("radius_m", source.sphere.radius_m);
-    json.field("albedo", source.sphere.albedo).list("only", source.only).end_object();
+    json.field("albedo", source.sphere.albedo).list("only", source.only);
+    if (!source.models.empty()) write_models(json, source.models);
+    json.end_object();
   }
   for (const auto& object : own) write_own(json, object);
   json.end_array();
@@ -95,12 +110,16 @@ std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
   for (const auto& source : catalogues) {
     files.push_back(source.path);
     files.push_back(source.facts_path);
+    for (const auto& [pattern, model] : source.models.rules())
+      files.insert(files.end(),
+                   {model->path, model->geometry.obj_path, model->geometry.materials_path});
   }
   for (const auto& object : own) {
     files.push_back(object.motion.trajectory_path);
     files.push_back(object.attitude ? object.attitude->table_path : "");
     files.push_back(object.geometry ? object.geometry->obj_path : "");
     files.push_back(object.geometry ? object.geometry->materials_path : "");
+    if (!object.model_path.empty()) files.push_back(object.model_path);
   }
   return files;
 }

@@ -146,11 +146,20 @@ Mesh cylinder(double radius_m, double length_m, int sides, const Material& mater
 
 Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_front,
               const Material& wing_back) {
+  return box_wing(size, body, wing_front, wing_back, body);
+}
+
+Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_front,
+              const Material& wing_back, const Material& body_z) {
   if (!(size.gap_m >= 0.0)) throw Error("box-wing: gap must be >= 0");
+  Mesh bus = box(size.body_m, body);
+  if (body_z != body) {
+    bus.materials.push_back(body_z);
+    for (const std::size_t facing_z : {2, 3}) bus.triangles[facing_z].material = 1;
+  }
   const double away = size.body_m.y / 2 + size.gap_m + size.wing_length_m / 2;
   const Mesh wing = as_panel(plate(size.wing_width_m, size.wing_length_m, wing_front, wing_back));
-  return merged(merged(box(size.body_m, body), moved(wing, {0, away, 0})),
-                moved(wing, {0, -away, 0}));
+  return merged(merged(bus, moved(wing, {0, away, 0})), moved(wing, {0, -away, 0}));
 }
 
 Mesh starlink_like(const Material& chassis, const Material& array_front,

@@ -28,6 +28,9 @@ struct BoxWing {
 };
 Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_front,
               const Material& wing_back);
+/// The same with another material on the side of the body that faces +z.
+Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_front,
+              const Material& wing_back, const Material& body_z);
 
 /// A flat chassis of 3.65 m2 that faces +z (the Earth in nadir attitude) with one array of 22 m2
 /// that is perpendicular to it and faces +y: areas of the Starlink v1.5 models in Fankhauser, Tyson

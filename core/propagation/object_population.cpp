@@ -11,7 +11,7 @@ ObjectRoster published_roster(const ObjectPopulation& population) {
 }
 
 ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own,
-                               const Ellipsoid& ellipsoid) {
+                               const Ellipsoid& ellipsoid, const ObjectModels& models) {
   ObjectPopulation population{
       .roster = {.objects = roster.objects}, .elements = roster.elements, .ellipsoid = ellipsoid};
   std::size_t own_by_elements = 0;
@@ -34,6 +34,9 @@ ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<Own
     if (model) population.models.push_back(*model);
     object_at[i] = &object;
   }
+  for (std::size_t i = 0; i < by_elements - own_by_elements; ++i)
+    if (const auto* model = models.of(roster.objects[i].name, roster.objects[i].catalogue_number))
+      population.attitudes.push_back({i, model->attitude.model});
   for (std::size_t i = by_elements - own_by_elements; i < object_at.size(); ++i)
     if (object_at[i]->attitude) population.attitudes.push_back({i, object_at[i]->attitude->model});
   return population;

@@ -31,9 +31,9 @@ struct ObjectPopulation {
 ObjectRoster published_roster(const ObjectPopulation& population);
 
 /// Returns the population of a published roster: element sets are the roster's, other motions and
-/// all attitudes those of the scenario's own objects. Throws `Error` if the roster is not one of a
-/// scenario with these objects.
+/// all attitudes those of the scenario's own objects and of `models`. Throws `Error` if the roster
+/// is not one of a scenario with these objects.
 ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own,
-                               const Ellipsoid& ellipsoid = wgs84);
+                               const Ellipsoid& ellipsoid = wgs84, const ObjectModels& models = {});
 
 }  // namespace dmise

@@ -19,7 +19,7 @@ for command in $(run dmise man --list); do
 done
 for program in "$bin"/dmise-*; do
   name=${program##*/}
-  [[ $name == dmise-bench || $name == dmise-studies || ! -x $program ]] || page "$name" "$name" --man
+  [[ $name == dmise-bench || $name == dmise-validate || $name == dmise-studies || ! -x $program ]] || page "$name" "$name" --man
 done
 run dmise completion bash >"$out/bash-completion/completions/dmise"
 run dmise completion zsh >"$out/zsh/vendor-completions/_dmise"

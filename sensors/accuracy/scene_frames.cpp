@@ -57,16 +57,17 @@ std::unique_ptr<FramePipeline> SceneFrames::pipeline(const SensorConfig& as, boo
   OutputConfig output;
   output.sources = output.background = planes;
   return std::make_unique<FramePipeline>(
-      PipelineSettings{.sensor = as,
-                       .clock = make_clock(scenario_),
-                       .seed = scenario_.seed,
-                       .digest = "",
-                       .faintest_star_mag = scenario_.faintest_star_mag,
-                       .star_truth = planes,
-                       .output = output,
-                       .shapes = std::make_shared<const ObjectShapes>(scenario_.own_objects,
-                                                                      as.camera.band, as.effects),
-                       .radiance_parts = {}},
+      PipelineSettings{
+          .sensor = as,
+          .clock = make_clock(scenario_),
+          .seed = scenario_.seed,
+          .digest = "",
+          .faintest_star_mag = scenario_.faintest_star_mag,
+          .star_truth = planes,
+          .output = output,
+          .shapes = std::make_shared<const ObjectShapes>(scenario_.own_objects, as.camera.band,
+                                                         as.effects, models_of(scenario_.objects)),
+          .radiance_parts = {}},
       stars_, threads_);
 }
 

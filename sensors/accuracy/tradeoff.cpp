@@ -70,7 +70,8 @@ struct StatedErrors {
 
 StatedErrors stated_errors(const SceneFrames& scene, const SensorConfig& sensor) {
   const Scenario& scenario = scene.scenario();
-  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects);
+  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
+                            models_of(scenario.objects));
   const ExposurePlanner planner(sensor, scene.stars().get(), scenario.faintest_star_mag, &shapes);
   const View view(sensor, scene.times(), scene.world(), scenario.seed);
   std::vector<std::size_t> objects;

@@ -17,7 +17,8 @@ std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig&
       wants_objects ? population
                     : only_these(population, needed_objects(sensor, population.roster));
   const StateSource source(seen, clock, threads);
-  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects);
+  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
+                            models_of(scenario.objects));
   const ExposurePlanner planner(sensor, stars, scenario.faintest_star_mag, &shapes);
   FrameWorlds worlds(scenario, sensor, clock);
   for (const std::uint32_t frame : evenly(frames_within(sensor, scenario.duration), most_frames)) {

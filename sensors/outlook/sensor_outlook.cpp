@@ -118,7 +118,8 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   }
   const ObjectPopulation& seen = out.objects_counted ? population : needed;
   const StateSource source(seen, clock, threads);
-  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects);
+  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
+                            models_of(scenario.objects));
   const OutlookScene scene{.stars = std::move(stars),
                            .faintest_star_mag = scenario.faintest_star_mag,
                            .shapes = &shapes,

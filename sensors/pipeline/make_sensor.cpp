@@ -28,11 +28,14 @@ std::shared_ptr<const std::vector<OwnObject>> propagated_by_sensors(const Scenar
 PipelineSettings sensor_settings(const Scenario& scenario, const std::string& name,
                                  const std::string& digest) {
   const SensorConfig& sensor = sensor_named(scenario, name);
+  const auto shapes_in = [&](const Band& band) {
+    return std::make_shared<const ObjectShapes>(scenario.own_objects, band, sensor.effects,
+                                                models_of(scenario.objects));
+  };
   std::vector<PipelineSettings::Part> parts;
   if (scenario.output.radiance_bands > 1)
     for (const Band& part : parts_of(sensor.camera.band, scenario.output.radiance_bands))
-      parts.push_back(
-          {part, std::make_shared<const ObjectShapes>(scenario.own_objects, part, sensor.effects)});
+      parts.push_back({part, shapes_in(part)});
   return {.sensor = sensor,
           .clock = make_clock(scenario),
           .seed = scenario.seed,
@@ -40,8 +43,7 @@ PipelineSettings sensor_settings(const Scenario& scenario, const std::string& na
           .faintest_star_mag = scenario.faintest_star_mag,
           .star_truth = scenario.output.star_truth,
           .output = scenario.output,
-          .shapes = std::make_shared<const ObjectShapes>(scenario.own_objects, sensor.camera.band,
-                                                         sensor.effects),
+          .shapes = shapes_in(sensor.camera.band),
           .propagated = propagated_by_sensors(scenario),
           .radiance_parts = std::move(parts)};
 }

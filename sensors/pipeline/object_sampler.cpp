@@ -88,7 +88,7 @@ double ObjectSampler::magnitude_of_all_light(std::size_t object, const Motion& m
 }
 
 const ObjectShape* ObjectSampler::shape(std::size_t object) const {
-  return shapes_ ? shapes_->of(view_.world().roster().objects[object].catalogue_number) : nullptr;
+  return shapes_ ? shapes_->of(view_.world().roster().objects[object]) : nullptr;
 }
 
 double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,

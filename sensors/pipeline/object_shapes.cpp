@@ -14,23 +14,38 @@
 
 namespace dmise {
 
+ObjectShape shape_of(const GeometryConfig& geometry, const std::optional<HingedPanel>& panel,
+                     const Band& band, bool emits) {
+  const Mesh& mesh = *geometry.mesh;
+  const double radius_m = panel ? dmise::radius_m(mesh, *panel) : dmise::radius_m(mesh);
+  return {std::make_shared<const FacetLight>(mesh, band, emits), panel, radius_m,
+          std::min(surface_m2(mesh), pi * radius_m * radius_m)};
+}
+
 ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& band,
-                           const EffectSet& effects)
-    : sun_photons_(object_photons_per_s_m2(sun_v_mag, band)) {
+                           const EffectSet& effects, const ObjectModels& models)
+    : models_(models), sun_photons_(object_photons_per_s_m2(sun_v_mag, band)) {
   const bool emits = acts<ThermalEmission>(effects, {});
   for (const auto& object : objects) {
-    if (!object.geometry) continue;
-    const Mesh& mesh = *object.geometry->mesh;
-    const double radius_m =
-        object.panel ? dmise::radius_m(mesh, *object.panel) : dmise::radius_m(mesh);
-    shapes_.emplace(object.catalogue_number,
-                    ObjectShape{std::make_shared<const FacetLight>(mesh, band, emits), object.panel,
-                                radius_m, std::min(surface_m2(mesh), pi * radius_m * radius_m)});
+    own_.insert(object.catalogue_number);
+    if (object.geometry)
+      shapes_.emplace(object.catalogue_number,
+                      shape_of(*object.geometry, object.panel, band, emits));
   }
+  for (const auto& [pattern, model] : models_.rules())
+    if (!of_models_.contains(model.get()))
+      of_models_.emplace(model.get(), shape_of(model->geometry, model->panel, band, emits));
 }
 
 std::shared_ptr<const FacetLight> ObjectShape::light(const Vec<Body>& to_sun) const {
   return panel ? std::make_shared<const FacetLight>(at_rest->turned(*panel, to_sun)) : at_rest;
+}
+
+const ObjectShape* ObjectShapes::of(const ObjectInfo& object) const {
+  if (of_models_.empty() || own_.contains(object.catalogue_number))
+    return of(object.catalogue_number);
+  const ObjectModel* model = models_.of(object.name, object.catalogue_number);
+  return model ? &of_models_.at(model) : nullptr;
 }
 
 const ObjectShape* ObjectShapes::of(std::uint32_t catalogue_number) const {

@@ -2,6 +2,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/config/object_config.h"
@@ -21,6 +22,10 @@ struct ObjectShape {
   /// Its light with the panel turned to the Sun.
   std::shared_ptr<const FacetLight> light(const Vec<Body>& to_sun) const;
 };
+
+/// The surface of a geometry whose panel, if it has one, turns.
+ObjectShape shape_of(const GeometryConfig& geometry, const std::optional<HingedPanel>& panel,
+                     const Band& band, bool emits = true);
 
 /// How a shape is turned and lit at one instant, as the observer sees it.
 struct ShapePose {
@@ -47,12 +52,16 @@ std::vector<LightSource> secondary_light_on(const View& view, const Vec<Gcrs>& p
 /// first of them is near enough to show it.
 class ObjectShapes {
  public:
+  /// `models`: of objects of catalogues.
   ObjectShapes(const std::vector<OwnObject>& objects, const Band& band,
-               const EffectSet& effects = {});
+               const EffectSet& effects = {}, const ObjectModels& models = {});
 
-  bool empty() const { return shapes_.empty(); }
+  bool empty() const { return shapes_.empty() && models_.empty(); }
   /// Null for an object without a shape.
+  const ObjectShape* of(const ObjectInfo& object) const;
+  /// The same of an object of the scenario's own.
   const ObjectShape* of(std::uint32_t catalogue_number) const;
+  const ObjectModels& models() const { return models_; }
 
   /// Throws `Error` where there is no OpenGL.
   Renderer& renderer() const;
@@ -63,7 +72,10 @@ class ObjectShapes {
   double sun_photons() const { return sun_photons_; }
 
  private:
-  std::map<std::uint32_t, ObjectShape> shapes_;
+  std::map<std::uint32_t, ObjectShape> shapes_;  // of the scenario's own objects
+  std::set<std::uint32_t> own_;                  // their numbers, also of those without a shape
+  ObjectModels models_;
+  std::map<const ObjectModel*, ObjectShape> of_models_;
   mutable std::unique_ptr<Renderer> renderer_;
   double sun_photons_ = 0.0;
 };

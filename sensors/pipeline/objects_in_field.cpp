@@ -257,8 +257,7 @@ std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* 
     if (view.platform() == i || !world.has_state(i, exposure.start) ||
         !world.has_state(i, exposure.end) || !world.has_state(i, exposure.middle))
       continue;
-    const ObjectShape* shape =
-        shapes ? shapes->of(world.roster().objects[i].catalogue_number) : nullptr;
+    const ObjectShape* shape = shapes ? shapes->of(world.roster().objects[i]) : nullptr;
     if (cone.crossed_by(i, shape ? shape->radius_m : 0.0) && !cone.at_sensor(i)) found.push_back(i);
   }
   return found;

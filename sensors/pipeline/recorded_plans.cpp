@@ -46,9 +46,7 @@ void replay_plans(const std::string& run_json, Scenario& scenario) {
       fill_gaps(sensor.recorded_plans, frames_within(sensor, scenario.duration));
       SceneFacts scene = scene_facts(sensor);
       scene.stars = !scenario.star_catalogue_path.empty();
-      scene.shapes = std::ranges::any_of(scenario.own_objects, [](const OwnObject& object) {
-        return object.geometry.has_value();
-      });
+      scene.shapes = have_shapes(scenario.objects, scenario.own_objects);
       const auto effects = plannable_effects(sensor, scene);
       for (std::uint32_t frame = 1; frame <= frames_within(sensor, scenario.duration); ++frame)
         recorded_effects(effects, sensor, frame);

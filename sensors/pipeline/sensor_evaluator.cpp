@@ -78,7 +78,8 @@ void SensorEvaluator::take_in(std::span<const Message> inputs) {
   for (const auto& message : inputs) {
     if (propagates() && std::holds_alternative<ObjectRoster>(*message.state)) {
       const auto objects =
-          propagated_objects(message.state, *propagated_, clock_, sensor_.ellipsoid);
+          propagated_objects(message.state, *propagated_, clock_, sensor_.ellipsoid,
+                             shapes_ ? shapes_->models() : ObjectModels());
       world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
       states_.emplace(objects, grid_.tick_length);
     } else if (const auto* set = std::get_if<TaskSet>(message.state.get())) {

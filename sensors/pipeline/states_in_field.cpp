@@ -18,14 +18,15 @@ double interpolation_error_m(double tick_s) { return 1e-4 * std::pow(tick_s, 4) 
 }  // namespace
 
 PropagatedObjects::PropagatedObjects(const ObjectRoster& roster, const std::vector<OwnObject>& own,
-                                     Clock clock, const Ellipsoid& ellipsoid)
-    : population(population_of(roster, own, ellipsoid)),
+                                     Clock clock, const Ellipsoid& ellipsoid,
+                                     const ObjectModels& models)
+    : population(population_of(roster, own, ellipsoid, models)),
       from_catalogues(population.roster.objects.size() - own.size()),
       source(population, std::move(clock), threads) {}
 
 std::shared_ptr<const PropagatedObjects> propagated_objects(
     const std::shared_ptr<const State>& roster, const std::vector<OwnObject>& own,
-    const Clock& clock, const Ellipsoid& ellipsoid) {
+    const Clock& clock, const Ellipsoid& ellipsoid, const ObjectModels& models) {
   using Objects = std::weak_ptr<const PropagatedObjects>;
   static std::mutex mutex;
   static std::map<std::weak_ptr<const State>, Objects, std::owner_less<>> of_roster;
@@ -35,7 +36,7 @@ std::shared_ptr<const PropagatedObjects> propagated_objects(
   auto objects = known.lock();
   if (!objects) {
     objects = std::make_shared<const PropagatedObjects>(std::get<ObjectRoster>(*roster), own, clock,
-                                                        ellipsoid);
+                                                        ellipsoid, models);
     known = objects;
   }
   return objects;

@@ -13,7 +13,7 @@ namespace dmise {
 /// The objects of a roster with their motion models.
 struct PropagatedObjects {
   PropagatedObjects(const ObjectRoster& roster, const std::vector<OwnObject>& own, Clock clock,
-                    const Ellipsoid& ellipsoid);
+                    const Ellipsoid& ellipsoid, const ObjectModels& models);
 
   ObjectPopulation population;
   std::size_t from_catalogues;  // number of the first objects, those of catalogues
@@ -24,7 +24,7 @@ struct PropagatedObjects {
 /// The objects of a published roster. The sensors of one process share them.
 std::shared_ptr<const PropagatedObjects> propagated_objects(
     const std::shared_ptr<const State>& roster, const std::vector<OwnObject>& own,
-    const Clock& clock, const Ellipsoid& ellipsoid);
+    const Clock& clock, const Ellipsoid& ellipsoid, const ObjectModels& models = {});
 
 /// States that a sensor propagates itself, exposure by exposure: equal to the published states to
 /// the bit, of the objects that may be in the field alone. Those that a node moves are as it told.

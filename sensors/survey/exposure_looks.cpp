@@ -57,7 +57,8 @@ void compare_with_star(Look& look, const std::vector<ObjectSample>& samples, con
 SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
     : scene_(scene),
       sensor_(sensor),
-      shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects),
+      shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects,
+              models_of(scene.scenario().objects)),
       noise_(sensor, scene.scenario().seed),
       drawn_(drawn_of(scene, sensor)),
       complete_to_v_mag_(scene.stars() ? CatalogueSky(scene.stars()).complete_to_v_mag()

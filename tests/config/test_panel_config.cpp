@@ -51,6 +51,9 @@ TEST(PanelConfig, TurnsAsItsModelDoesUnlessToldOtherwise) {
   const HingedPanel array = panel("geometry: {model: starlink-like, scale: 2}, panel: {}");
   EXPECT_EQ(array.axes, (SunTrackingPanel{.hinge = {1, 0, 0}, .normal = {0, 1, 0}}));
   EXPECT_NEAR(array.hinge_m.z, -0.4, 1e-15);
+  const HingedPanel turned = panel("geometry: {model: starlink-like, yaw_deg: -90}, panel: {}");
+  EXPECT_NEAR(turned.axes.normal.x, 1.0, 1e-15);
+  EXPECT_NEAR(turned.axes.hinge.y, -1.0, 1e-15);
   EXPECT_EQ(panel("geometry: {model: starlink-like, scale: 2}, "
                   "panel: {hinge: [0, 0, 2], hinge_m: [1, 2, 3]}"),
             (HingedPanel{{.hinge = {0, 0, 1}, .normal = {0, 1, 0}}, {1, 2, 3}}));

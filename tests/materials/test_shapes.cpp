@@ -57,6 +57,22 @@ TEST(Shapes, ThatHideNothingOfThemselvesAreKnownAsConvex) {
   EXPECT_FALSE(is_convex(box_wing({}, {}, {}, {})));
 }
 
+TEST(Shapes, ABoxWingHasAnotherMaterialTowardsZ) {
+  const Material body{.name = "body"}, towards_z{.name = "towards z"};
+  const Mesh mesh = box_wing({}, body, {}, {}, towards_z);
+  double area_m2 = 0.0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    if (mesh.materials[t.material].name != "towards z") continue;
+    const Vec<Body> a = mesh.vertex_m[t.corner[0]];
+    const Vec<Body> normal =
+        cross(mesh.vertex_m[t.corner[1]] - a, mesh.vertex_m[t.corner[2]] - a) / 2.0;
+    EXPECT_NEAR(normal.z, norm(normal), 1e-15);
+    area_m2 += normal.z;
+  }
+  EXPECT_NEAR(area_m2, BoxWing{}.body_m.x * BoxWing{}.body_m.y, 1e-12);
+}
+
 // Of the finest sphere too, which all pairs of facets and vertices would take half a minute for.
 TEST(Shapes, OfManyFacetsAreKnownAsConvexUpToASmallDent) {
   Mesh fine = sphere(1, 200'000, {});

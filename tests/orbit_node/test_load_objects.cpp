@@ -53,6 +53,23 @@ TEST_F(ObjectPopulationTest, CataloguesComeFirstThenElementsThenTheOtherModels) 
   EXPECT_EQ(p.attitudes[0].object, 2u);
 }
 
+// A model gives an object of a catalogue attitude and panel, here and in a sensor that knows the
+// roster alone.
+TEST_F(ObjectPopulationTest, AModelTurnsTheObjectsThatItNames) {
+  const std::string objects = "  - {catalogue: goes.tle, models: {\"GOES *\": oneweb}}\n";
+  const auto p = population(objects);
+  ASSERT_EQ(p.attitudes.size(), 1u);
+  EXPECT_EQ(p.attitudes[0].object, 0u);
+  ASSERT_TRUE(p.roster.objects[0].panel);
+  EXPECT_EQ(p.roster.objects[0].panel->hinge.y, 1.0);
+  const auto again =
+      population_of(published_roster(p), {}, wgs84, models_of(load(objects).objects));
+  ASSERT_EQ(again.attitudes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<NadirAttitude>(again.attitudes[0].model));
+  EXPECT_TRUE(
+      population("  - {catalogue: goes.tle, models: {\"NOAA *\": oneweb}}\n").attitudes.empty());
+}
+
 TEST_F(ObjectPopulationTest, AnObjectOfTwoCataloguesIsTheFirstOnesAndANoteSaysSo) {
   write("newer.tle",
         "NEWER\n"

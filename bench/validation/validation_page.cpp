@@ -1,0 +1,132 @@
+#include "bench/validation/validation_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/formatted.h"
+#include "core/base/quantile.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double phase_bin_deg = 5.0, widest_mag = 2.5;
+constexpr std::size_t most_points = 1500, least_in_bin = 10;
+constexpr Colour grey{190, 190, 190}, blue{31, 119, 180}, orange{255, 127, 14};
+
+constexpr const char* introduction = R"(# Validation
+
+What the models give beside what the sky gave. `dmise validate` writes this page from measurements that are not part of the
+repository (`--data DIR`, else `$DMISE_DATA/validation`); it needs no network. Half of each set was not seen by the fit of the
+model that it judges.
+)";
+
+constexpr const char* about_brightness = R"(
+## Brightness of families of satellites
+
+A model is a shape with effective surfaces and an attitude law (`dmise list models`, [objects](models/objects.md#models-of-families)). The light of
+its facets for the Sun, the observer and the attitude of each measurement is compared with the magnitude that was measured. Single
+exposures state height, elevation and azimuth. Light curves state range and phase, and the circular orbit of the family's
+inclination that agrees with both (to 0.5 km of range) says where the satellite was. AB magnitudes in V are compared with the AB magnitude
+of sunlight of the predicted V (the same photons over 3631 Jy); MMT-9's, which are of no filter and calibrated to V, with V itself. All are above the
+atmosphere.
+
+- **median**: measured less predicted; above 0 the model is too bright.
+- **scatter**: the standard deviation of that. Satellites of a family differ, so no model of the family brings it to 0.
+- **of a phase law**: the scatter that a parabola in phase leaves, fitted to the fitted half alone: what is known without a shape.
+- **between tracks**: the standard deviation of the tracks' medians (a track of single exposures is a night).
+- **within tracks**: the standard deviation of means over a second about their track's mean, the median over tracks. The models are
+  smoother than the satellites: boxes lack the small parts that glint and fade within a minute.
+
+This does not show: colours (all is in V), glints shorter than a second, light below 20 deg of elevation, phases and seasons that
+were not measured, or satellites with visors.
+)";
+
+ChartAxis axis(const std::string& label, double least, double most, double step) {
+  ChartAxis axis{.label = label, .least = least, .most = most};
+  for (double at = std::ceil(least / step) * step; at <= most + 1e-9; at += step)
+    axis.ticks.push_back({at, formatted("%g", std::abs(at) < 1e-9 ? 0.0 : at)});
+  return axis;
+}
+
+std::string row(const char* half, const BrightnessFigures& f, bool curves) {
+  std::string text =
+      formatted("| %s | %zu | %zu | %+.2f | %.2f | %.2f | %.2f |", half, f.lights, f.tracks,
+                f.median_mag, f.scatter_mag, f.phase_law_scatter_mag, f.track_scatter_mag);
+  return text + (curves
+                     ? formatted(" %.2f, %.2f |\n", f.within_measured_mag, f.within_predicted_mag)
+                     : std::string(" |\n"));
+}
+
+std::string section(const FamilyBrightness& family, const std::string& pictures) {
+  const bool curves = family.held_out.within_measured_mag > 0.0;
+  std::string text = "\n## " + family.what + "\n\n";
+  text += "Model `" + family.model + "` against " + family.source + "; " + family.split + ". ";
+  if (family.left_out > 0)
+    text += counted(family.left_out, "measurement") + " in penumbra " +
+            (family.left_out == 1 ? "is" : "are") + " left out. ";
+  text += formatted(
+      "Wanted of the held-out half: a median within %.2f mag, a scatter of at most "
+      "%.2f mag%s.\n\n",
+      family.target_median_mag, family.target_scatter_mag,
+      curves ? ", 1.2 times the phase law's" : "");
+  text +=
+      "| half | points | tracks | median, mag | scatter, mag | of a phase law, mag | between "
+      "tracks, "
+      "mag | within tracks: measured, model, mag |\n|---|---|---|---|---|---|---|---|\n";
+  text += row("fitted", family.fitted, curves) + row("held out", family.held_out, curves);
+  return text + "\n![Measured less predicted magnitude by phase](" + pictures + "/" + family.model +
+         ".svg)\n";
+}
+
+}  // namespace
+
+Chart difference_chart(const FamilyBrightness& family) {
+  Chart chart{.title = family.what,
+              .subtitle =
+                  "held-out half, measured less predicted magnitude; above 0 the model is "
+                  "too bright"};
+  ChartSeries points{.label = "measurements", .colour = grey},
+      middle{.label = "median", .colour = blue}, bounds{.label = "68 %", .colour = orange};
+  std::map<int, std::vector<double>> bins;
+  std::size_t held_out = 0;
+  for (const auto& light : family.lights) held_out += light.held_out;
+  const std::size_t every = std::max<std::size_t>(1, held_out / most_points);
+  std::size_t k = 0;
+  double least_deg = 180.0, most_deg = 0.0;
+  for (const auto& light : family.lights) {
+    if (!light.held_out) continue;
+    const double phase_deg = light.phase_rad / deg;
+    least_deg = std::min(least_deg, phase_deg);
+    most_deg = std::max(most_deg, phase_deg);
+    bins[int(std::floor(phase_deg / phase_bin_deg))].push_back(light.difference_mag());
+    if (k++ % every == 0 && std::abs(light.difference_mag()) < widest_mag)
+      points.lines.push_back(
+          {{phase_deg - 0.15, light.difference_mag()}, {phase_deg + 0.15, light.difference_mag()}});
+  }
+  middle.lines.emplace_back();
+  bounds.lines.resize(2);
+  for (const auto& [bin, values] : bins) {
+    if (values.size() < least_in_bin) continue;
+    const double at = (bin + 0.5) * phase_bin_deg;
+    middle.lines[0].push_back({at, median_of(values)});
+    bounds.lines[0].push_back({at, quantile_of(values, 0.16)});
+    bounds.lines[1].push_back({at, quantile_of(values, 0.84)});
+  }
+  chart.x = axis("Sun-satellite-observer, deg", std::floor(least_deg / 10) * 10,
+                 std::ceil(most_deg / 10) * 10, 20.0);
+  chart.y = axis("measured - predicted, mag", -widest_mag, widest_mag, 0.5);
+  chart.series = {std::move(points), std::move(bounds), std::move(middle)};
+  return chart;
+}
+
+std::string validation_page(const std::vector<FamilyBrightness>& families,
+                            const std::string& pictures) {
+  std::string text = introduction;
+  if (!families.empty()) text += about_brightness;
+  for (const auto& family : families) text += section(family, pictures);
+  return text;
+}
+
+}  // namespace dmise
