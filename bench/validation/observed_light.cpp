@@ -55,8 +55,9 @@ class Table {
     return *value;
   }
   Utc time(std::size_t row, const std::string& column) const {
+    const std::string& said = text(row, column);
     try {
-      return parse_utc(text(row, column));
+      return parse_utc(said);
     } catch (const ConfigError& error) {
       fail(rows_[row].line, column + ": " + error.what());
     }

@@ -120,7 +120,7 @@ sensors:
       detector: {{quantum_efficiency: 0.8, dark_e_per_s: 0.1, read_noise_e: 5, full_well_e: 80000, gain_e_per_dn: 1.5, bias_dn: 300, adc_bits: 16}}
       band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
     pointing: {{target: target, tracking: fixed, offset_deg: [0.02, -0.03]}}
-    exposure_s: 0.02
+    exposure_s: 0.05
     cadence_s: {cadence}
     sky: dark
 output: {{fits: true, png: false, truth: true}}
@@ -238,7 +238,7 @@ SECTION = """
 ## Places of satellites with precise orbits
 
 Sentinel-3A (December 2018) and Jason-1 (January 2003) move by their SP3, which DORIS centres state to centimetres, in `motion: {{oem}}`. A
-camera of 3.1 arcsec a pixel exposes 0.02 s; the trail is detected in the frame. What is compared is the direction of the detection, of which
+camera of 3.1 arcsec a pixel exposes 0.05 s; the trail is detected in the frame. What is compared is the direction of the detection, of which
 `refraction_parallax` is removed since the range is known ([wire](wire.md#directions-of-detections)), with ERFA's of the SP3: light time, no aberration.
 
 | satellite, time, site | detections | mean difference east, north, arcsec | error of the nearest element set |
@@ -262,6 +262,8 @@ def compare(options):
                 (folder / "target.oem").write_text(orbit.oem(shown, k - 12, k + 12))
                 run = make(options.dmise, folder, orbit, site, k, n + 1, options.every)
                 pairs = [difference(detection, orbit, site) for detection in target_of(run)]
+                if not pairs:
+                    sys.exit(f"{shown}, {utc_text(orbit.times[k])}: nothing is detected")
                 offs += [off for off, _ in pairs]
                 sigmas += [in_sigmas(*pair) for pair in pairs]
                 km, arcsec = old_elements(options.data / "orbits", orbit, name, site, k)

@@ -12,7 +12,7 @@ namespace dmise {
 namespace {
 
 constexpr double phase_bin_deg = 5.0, widest_mag = 2.5;
-constexpr std::size_t most_points = 1500, least_in_bin = 10;
+constexpr std::size_t most_points = 500, least_in_bin = 10;
 constexpr Colour grey{190, 190, 190}, blue{31, 119, 180}, orange{255, 127, 14};
 
 constexpr const char* introduction = R"(# Validation

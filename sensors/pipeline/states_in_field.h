@@ -13,7 +13,7 @@ namespace dmise {
 /// The objects of a roster with their motion models.
 struct PropagatedObjects {
   PropagatedObjects(const ObjectRoster& roster, const std::vector<OwnObject>& own, Clock clock,
-                    const Ellipsoid& ellipsoid, const ObjectModels& models);
+                    const Ellipsoid& ellipsoid, const ObjectModels& models = {});
 
   ObjectPopulation population;
   std::size_t from_catalogues;  // number of the first objects, those of catalogues
