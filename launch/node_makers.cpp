@@ -11,6 +11,7 @@
 #include "nodes/fusion/fusion_journal.h"
 #include "nodes/own/own_actor.h"
 #include "nodes/own/own_detector.h"
+#include "nodes/own/own_sensor.h"
 #include "nodes/runtime/process/event.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/frame_times.h"
@@ -46,11 +47,11 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
 }
 
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
-  SourceFinder finder =
-      own_finder(parts.scenario, node, parts.directory,
-                 {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
+  const OwnNodeSettings settings{
+      .error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()};
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
-                     parts.threads, std::move(finder));
+                     parts.threads, own_finder(parts.scenario, node, parts.directory, settings),
+                     own_observer(parts.scenario, node, parts.directory, settings));
 }
 
 std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {

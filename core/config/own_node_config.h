@@ -12,7 +12,7 @@ class JsonWriter;
 
 /// What a program of the user's does: it is a node of the run, or runs in the process of a sensor
 /// or of the fusion node.
-enum class OwnNodeRole { none, actor, detector, tracker };
+enum class OwnNodeRole { none, actor, detector, tracker, sensor };
 
 /// A program of the user's: `{name: gnc, run: [python3, gnc.py]}`.
 struct OwnNode {

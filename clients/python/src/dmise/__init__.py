@@ -4,9 +4,9 @@
         print(detection.id, detection.time_utc, detection.ra_rad, detection.dec_rad)
 
 `subscribe` observes a run, `aio.subscribe` does so in asyncio, `Node` takes part in its clock, `actor` and `serve` move objects
-in it, `detector` finds sources in its frames, `tracker` makes the tracks, `open_run` reads the directory of a run that is over,
-`datasets` labelled frames for training; `record` writes all that is on the wire into a file, `open_recording` reads it and
-`Replay` plays it to observers.
+in it, `detector` finds sources in its frames, `sensor` observes, `tracker` makes the tracks, `open_run` reads the directory of a
+run that is over, `datasets` labelled frames for training; `record` writes all that is on the wire into a file, `open_recording`
+reads it and `Replay` plays it to observers.
 Units are in the names of fields; directions are ICRS, positions GCRS.
 """
 
@@ -27,6 +27,7 @@ from .message import Message
 from .node import Node, Tick
 from .own_detector import Detector, Found, SensorFrame, detector
 from .own_node import Actor, World, actor, serve
+from .own_sensor import Exposure, Observer, Sighting, Sightings, sensor
 from .own_states import State
 from .own_tracker import Point, SearchedFrame, Sensor, Tracker, Tracks, tracker
 from .orbit_fit import Orbit, Triangulated, fit_orbit, triangulate
@@ -41,11 +42,12 @@ from .tables import to_pandas
 from .world import (EarthOrientation, EnvironmentState, ObjectInfo, ObjectRoster, ObjectStates, SiteState,
                     SunTrackingPanel)
 
-__all__ = ["Actor", "ArrayLike", "Detection", "Detector", "EarthOrientation", "EnvironmentState", "Found", "Frame",
-           "FrameReport", "Frames", "Gap", "LineOfSight", "Message", "NoAnswer", "Node", "ObjectInfo", "ObjectRoster",
-           "ObjectStates", "Orbit", "Point", "Record", "Recorded", "Recording", "Refused", "Replay", "Run", "RunFailed",
-           "SearchedFrame", "Sensor", "SensorFrame", "SiteState", "State", "Subscription", "SunTrackingPanel", "Task", "Tick",
-           "Track", "Tracker", "Tracks", "Triangulated", "Truth", "Wcs", "WcsRefraction", "World", "actor", "aio",
-           "apparent_direction", "datasets", "detector", "fit_orbit", "frames", "line_of_sight", "open_recording", "open_run",
-           "pole_of", "propagate", "read_frame", "record", "serve", "subscribe", "to_pandas", "tracker", "triangulate"]
+__all__ = ["Actor", "ArrayLike", "Detection", "Detector", "EarthOrientation", "EnvironmentState", "Exposure", "Found",
+           "Frame", "FrameReport", "Frames", "Gap", "LineOfSight", "Message", "NoAnswer", "Node", "ObjectInfo",
+           "ObjectRoster", "ObjectStates", "Observer", "Orbit", "Point", "Record", "Recorded", "Recording", "Refused",
+           "Replay", "Run", "RunFailed", "SearchedFrame", "Sensor", "SensorFrame", "Sighting", "Sightings", "SiteState",
+           "State", "Subscription", "SunTrackingPanel", "Task", "Tick", "Track", "Tracker", "Tracks", "Triangulated",
+           "Truth", "Wcs", "WcsRefraction", "World", "actor", "aio", "apparent_direction", "datasets", "detector",
+           "fit_orbit", "frames", "line_of_sight", "open_recording", "open_run", "pole_of", "propagate", "read_frame",
+           "record", "sensor", "serve", "subscribe", "to_pandas", "tracker", "triangulate"]
 __version__ = "1.0.0"
