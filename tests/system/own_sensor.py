@@ -49,8 +49,9 @@ def program(name, **options):
 
 
 def write(directory, name, laser, policy="fail", duration_s=80):
-    (directory / "small.yaml").write_text(CAMERA.replace("columns: 512, rows: 384", "columns: 128, rows: 96")
-                                          .replace("view_deg: 15", "view_deg: 40"))
+    camera = CAMERA.replace("columns: 512, rows: 384", "columns: 128, rows: 96")
+    (directory / "small.yaml").write_text(camera.replace("view_deg: 15", "view_deg: 40").replace("aperture_m: 0.02",
+                                                                                                 "aperture_m: 0.0005"))
     for file in [*(HERE / "own_sensor").glob("*.py"), ROOT / "clients/python/examples/ranging.py"]:
         (directory / file.name).write_bytes(file.read_bytes())
     path = directory / name
@@ -129,7 +130,7 @@ def error_of(out, name="newcomer"):
     last = tracks[-1]
     nearest = min(truth, key=lambda row: abs(row["middle_ns"] - last["time_ns"]))
     seconds = (last["time_ns"] - nearest["middle_ns"]) / 1e9
-    sigma_m = math.sqrt(sum(last["covariance"][k] for k in (0, 2, 5)))
+    sigma_m = math.sqrt(sum(last["covariance_gcrs"][k] for k in (0, 2, 5)))
     # Over some seconds, with the attraction of the Earth's centre.
     position = nearest["true_position_gcrs_m"]
     pull = [-3.986004418e14 * x / math.sqrt(dot(position, position))**3 for x in position]
@@ -235,7 +236,7 @@ def asks_first(binary, directory):
         said = dmise(binary, command, scenario, "--out", directory / "ask", code=2)
         check("ask.yaml:2:" in said and "mortal.py" in said and "--allow-programs" in said,
               f"{command} asks: {said.strip()[-150:]}")
-    for command in (["check"], ["explain"], ["visible", "--print"]):
+    for command in (["check"], ["explain"], ["visible", "--print-only"]):
         dmise(binary, command[0], scenario, *command[1:])
     check(not list(directory.glob("never*")), "none of them starts it")
 
