@@ -131,6 +131,7 @@ SceneFacts facts_of(const Scenario& scenario, const SensorConfig& sensor, bool h
 void print_effects(const Scenario& scenario, bool has_stars) {
   std::vector<std::pair<std::string, std::string>> groups;  // names of sensors, their effects
   for (const auto& sensor : scenario.sensors) {
+    if (!sensor.is_camera()) continue;
     const std::string text = effects_text(sensor, facts_of(scenario, sensor, has_stars));
     const auto group =
         std::ranges::find(groups, text, &std::pair<std::string, std::string>::second);
@@ -146,6 +147,7 @@ void print_effects(const Scenario& scenario, bool has_stars) {
 void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
   json.key("effects").begin_object();
   for (const auto& sensor : scenario.sensors) {
+    if (!sensor.is_camera()) continue;
     json.key(sensor.name).begin_array();
     for (const EffectFacts* effect : effects_in(sensor, facts_of(scenario, sensor, has_stars))) {
       json.begin_object().field("name", effect->name).field("what", effect->what);

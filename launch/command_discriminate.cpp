@@ -66,7 +66,8 @@ std::string text_of_design(const DiscriminateOptions& options,
   if (materials.size() != 2)
     throw ConfigError("--among: a design is for two materials, got " +
                       std::to_string(materials.size()));
-  const Scenario scenario = load_scenario(options.design);
+  Scenario scenario = load_scenario(options.design);
+  keep_cameras(scenario, "dmise discriminate --design");
   std::vector<const SensorConfig*> sensors;
   for (const SensorConfig& s : scenario.sensors)
     if (options.sensors.empty() ||

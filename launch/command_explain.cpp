@@ -123,7 +123,8 @@ void print_levels(std::span<const ExplainedSensor> sensors) {
 }
 
 void explain(const ExplainOptions& options) {
-  const Scenario scenario = load_scenario(options.scenario);
+  Scenario scenario = load_scenario(options.scenario);
+  keep_cameras(scenario, "dmise explain");
   if (!options.sensor.empty()) sensor_named(scenario, options.sensor);
   const Clock clock = make_clock(scenario);
   const ScenarioInputs scene = load_scene(scenario, clock);

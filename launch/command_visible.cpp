@@ -192,7 +192,8 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
 }
 
 void visible(const VisibleOptions& options) {
-  const Scenario scenario = load_scenario(options.scenario);
+  Scenario scenario = load_scenario(options.scenario);
+  keep_cameras(scenario, "dmise visible");
   std::vector<const SensorConfig*> sensors;
   for (const std::string& name : options.sensors) sensors.push_back(&sensor_named(scenario, name));
   for (auto name = options.sensors.begin(); name != options.sensors.end(); ++name)

@@ -11,6 +11,7 @@
 #include "nodes/own/input_journal.h"
 #include "nodes/own/own_actor.h"
 #include "nodes/own/own_detector.h"
+#include "nodes/own/own_sensor.h"
 #include "nodes/runtime/process/event.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/frame_times.h"
@@ -47,12 +48,13 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
 }
 
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
+  const OwnNodeSettings settings{
+      .error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()};
   SourceFinder finder = std::move(parts.replayed.finders[node]);
-  if (!finder)
-    finder = own_finder(parts.scenario, node, parts.directory,
-                        {.error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()});
+  if (!finder) finder = own_finder(parts.scenario, node, parts.directory, settings);
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
-                     parts.threads, std::move(finder));
+                     parts.threads, std::move(finder),
+                     own_observer(parts.scenario, node, parts.directory, settings));
 }
 
 std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {

@@ -30,6 +30,11 @@ std::string node_text(const Scenario& scenario, const OwnNode& node) {
   for (const SensorConfig& sensor : scenario.sensors)
     if (sensor.detector && sensor.detector->node == node.name) searched.push_back(sensor.name);
   if (!searched.empty()) text += "; it detects in frames of " + joined(searched);
+  std::vector<std::string> observing;
+  for (const SensorConfig& sensor : scenario.sensors)
+    if (sensor.observing && sensor.observing->node == node.name)
+      observing.push_back(sensor.name + (sensor.observing->truth ? " (told the truth)" : ""));
+  if (!observing.empty()) text += "; it is the sensor " + joined(observing);
   if (node.role == OwnNodeRole::tracker) text += "; it makes the tracks";
   if (!moved.empty()) text += "; it moves " + joined(moved);
   if (!turned.empty()) text += "; it turns " + joined(turned);
@@ -49,6 +54,7 @@ ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs&
   append(outlook.warnings, catalogue_warnings(scenario, population));
   Threads threads(1);
   for (const auto& sensor : scenario.sensors) {
+    if (!sensor.is_camera()) continue;
     outlook.sensors.push_back(
         sensor_outlook(scenario, sensor, population, clock, scene.stars, threads, options));
     append(outlook.warnings, outlook.sensors.back().warnings);

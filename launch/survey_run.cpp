@@ -79,12 +79,18 @@ std::vector<MapMark> marks_of(const std::vector<SensorConfig>& sensors) {
   return marks;
 }
 
+Scenario cameras_of(const std::string& path) {
+  Scenario scenario = load_scenario(path);
+  keep_cameras(scenario, "dmise survey");
+  return scenario;
+}
+
 /// One survey, from files of an earlier call or from its sensors, to its products.
 class Survey {
  public:
   explicit Survey(const SurveyCommand& command)
       : command_(command),
-        scenario_(load_scenario(command.scenario)),
+        scenario_(cameras_of(command.scenario)),
         clock_(make_clock(scenario_)),
         population_(load_objects(scenario_, clock_)),
         candidates_(candidate_sites(scenario_.sensors)),

@@ -80,7 +80,8 @@ std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario
 bool starts_program(const NodeKind& kind, const std::string& name, const Scenario& scenario) {
   if (kind.name == std::string_view(fusion_node))
     return scenario.fusion && !scenario.fusion->node.empty();
-  return kind.each_own_node || (kind.each_sensor && sensor_named(scenario, name).detector);
+  return kind.each_own_node ||
+         (kind.each_sensor && !sensor_named(scenario, name).started_node().empty());
 }
 
 bool writes_files(const NodeKind& kind, const std::string& name, const Scenario& scenario) {

@@ -12,7 +12,7 @@ class JsonWriter;
 
 /// What a program of the user's does: it is a node of the run, or runs in the process of a sensor
 /// or of the fusion node.
-enum class OwnNodeRole { none, actor, detector, tracker };
+enum class OwnNodeRole { none, actor, detector, tracker, sensor };
 
 /// Topics that a node hears: `detection/alpha`, or `detection/*` of all sensors.
 struct HeardTopics {

@@ -45,9 +45,17 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.end_object();
 }
 
+void write_own_sensor(JsonWriter& json, const SensorConfig& s) {
+  json.field("node", s.observing->node).field("truth", s.observing->truth);
+  json.field("half_angle_deg", s.observing->half_angle_deg);
+  json.field("exposure_s", s.exposure_s).field("cadence_s", s.cadence_s);
+  json.field("first_exposure_s", s.first_exposure_s).end_object();
+}
+
 void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.begin_object().field("name", s.name);
   std::visit(PlaceWriter{json}, s.place);
+  if (!s.is_camera()) return write_own_sensor(json, s);
   write_camera(json, s.camera);
   json.key("pointing");
   write_pointing(json, s.pointing);

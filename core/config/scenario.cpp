@@ -232,7 +232,7 @@ OwnNode& give_role(Scenario& scenario, const std::string& name, const std::strin
   if (node == scenario.own_nodes.end())
     throw ConfigError(where + ": no node of `nodes` has this name" + did_you_mean(name, names) +
                       ", got " + printable(name));
-  constexpr const char* does[] = {"", "moves or turns objects", "detects", "tracks"};
+  constexpr const char* does[] = {"", "moves or turns objects", "detects", "tracks", "observes"};
   if (node->role != OwnNodeRole::none && node->role != role)
     throw ConfigError(node->where + ": " + does[int(node->role)] + " and " + does[int(role)] +
                       ": give each a node");
@@ -321,10 +321,14 @@ void assign_own_nodes(Scenario& scenario) {
     const bool both = motion && motion->node == attitude->node;
     attitude->place = both ? motion->place : counts[attitude->node]++;
   }
-  for (const SensorConfig& sensor : scenario.sensors)
+  for (const SensorConfig& sensor : scenario.sensors) {
     if (const auto& detector = sensor.detector)
       give_inner_role(scenario, detector->node, detector->where, OwnNodeRole::detector,
                       "a sensor starts its detector", "detector is asked for each frame");
+    if (const auto& observing = sensor.observing)
+      give_inner_role(scenario, observing->node, observing->where, OwnNodeRole::sensor,
+                      "a sensor starts its program", "sensor is asked at each exposure");
+  }
   if (const auto& fusion = scenario.fusion; fusion && !fusion->node.empty())
     give_inner_role(scenario, fusion->node, fusion->node_where, OwnNodeRole::tracker,
                     "the fusion node starts its tracker", "tracker is asked at each tick");
@@ -335,7 +339,8 @@ void assign_own_nodes(Scenario& scenario) {
     if (node.role == OwnNodeRole::none)
       throw ConfigError(node.where + ": moves and turns no object (motion: {node: " + node.name +
                         "}), no sensor detects by it (detection: {node: " + node.name +
-                        "}), and it makes no tracks (fusion: {node: " + node.name + "})");
+                        "}) or is it (node: " + node.name +
+                        "), and it makes no tracks (fusion: {node: " + node.name + "})");
   }
   for (OwnNode& node : scenario.own_nodes) find_topics(scenario, node);
 }
@@ -350,9 +355,10 @@ const Section& scenario_section() {
        optional("objects", objects_forms(), "Catalogues of objects, and objects of one's own."),
        optional("nodes", own_nodes_forms(),
                 "Programs of one's own that take part in the run: they move objects, detect in "
-                "the frames of sensors, or make the tracks."),
+                "the frames of sensors, are sensors, or make the tracks."),
        optional("stars", form::map(stars_section), "The stars; without it there are none."),
-       required("sensors", form::list(form::map(sensor_section), 1), "The sensors, at least one."),
+       required("sensors", form::list(form::map(sensor_section) | form::map(own_sensor_section), 1),
+                "The sensors, at least one: cameras, and sensors of one's own."),
        optional("accuracy", accuracy_forms(), "How accurate frames must be, for all sensors.",
                 "standard"),
        optional("effects", effects_forms(), "Effects switched for all sensors."),
@@ -437,6 +443,22 @@ std::optional<Site> site_of(const SensorConfig& sensor) {
   const auto* site = std::get_if<SiteConfig>(&sensor.place);
   if (!site) return std::nullopt;
   return Site{site->latitude_deg, site->longitude_deg, site->height_m, sensor.ellipsoid};
+}
+
+bool takes_states(const SensorConfig& sensor) {
+  return sensor.observing &&
+         (sensor.observing->truth || std::holds_alternative<PlatformConfig>(sensor.place));
+}
+
+bool Scenario::nodes_take_states() const {
+  return output.positions() || !network.sensors_propagate ||
+         std::ranges::any_of(sensors, takes_states);
+}
+
+void keep_cameras(Scenario& scenario, const std::string& who) {
+  const std::string first = scenario.sensors.front().where;
+  std::erase_if(scenario.sensors, [](const SensorConfig& sensor) { return !sensor.is_camera(); });
+  if (scenario.sensors.empty()) throw ConfigError(first + ": " + who + " needs a camera");
 }
 
 const SensorConfig& sensor_named(const Scenario& scenario, const std::string& name) {

@@ -146,7 +146,21 @@ struct SensorConfig {
     std::string where;  // `file:line:column: key`, for messages
   };
   std::optional<Detector> detector = {};  // none: our own
-  RecordedPlans recorded_plans = {};      // of a run that is replayed; empty: frames are planned
+  // Of a program that observes in place of a camera: the camera's members are not used.
+  struct Observing {
+    std::string node;               // of `nodes`
+    std::string where;              // `file:line:column: key`, for messages
+    bool truth = false;             // it is told the states of all objects
+    double half_angle_deg = 180.0;  // of a cone about its boresight that contains its field
+  };
+  std::optional<Observing> observing = {};  // none: a camera does
+  RecordedPlans recorded_plans = {};        // of a run that is replayed; empty: frames are planned
+
+  bool is_camera() const { return !observing; }
+  /// Of `nodes`, whose program its process starts; empty: none.
+  std::string started_node() const {
+    return observing ? observing->node : detector ? detector->node : "";
+  }
 };
 
 enum class OnSilentNode { fail, wait, drop, restart };
@@ -230,7 +244,7 @@ struct Scenario {
   Tick last_tick() const { return (duration.ns + tick.ns - 1) / tick.ns; }
   SimTime time_of(Tick k) const { return {k * tick.ns}; }
   /// Whether nodes of the scenario need the states of objects published.
-  bool nodes_take_states() const { return output.positions() || !network.sensors_propagate; }
+  bool nodes_take_states() const;
 };
 
 /// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got
@@ -242,6 +256,13 @@ Scenario read_scenario(const YamlValue& root);
 
 /// Canonical JSON of everything that determines the products: the same text gives the same bytes.
 std::string physics_json(const Scenario& scenario);
+
+/// Whether a sensor of the user's needs published states: for its truth, or for its platform.
+bool takes_states(const SensorConfig& sensor);
+
+/// Leaves the cameras of a scenario, for `who`, which needs one. Throws `ConfigError` if there is
+/// none.
+void keep_cameras(Scenario& scenario, const std::string& who);
 
 /// Where a sensor on the ground is; nothing in orbit.
 std::optional<Site> site_of(const SensorConfig& sensor);

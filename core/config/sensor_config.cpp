@@ -133,6 +133,48 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   }
 }
 
+void read_place(YamlMap& map, const YamlValue& value, SensorConfig& sensor) {
+  const auto site = map.find("site");
+  const auto platform = map.find("platform");
+  if (bool(site) == bool(platform))
+    value.fail(
+        site ? "has site and platform: give either site (on the ground) or platform (an object "
+               "of the catalogue)"
+             : "needs either site (on the ground) or platform (an object of the catalogue)",
+        false);
+  if (site)
+    sensor.place = read_site(*site);
+  else
+    sensor.place = PlatformConfig{printable(platform->text()), platform->place()};
+}
+
+/// Reads when exposures are.
+void read_exposures(YamlMap& map, SimTime duration, SensorConfig& sensor) {
+  const auto exposure = map.require("exposure_s");
+  sensor.exposure_s = exposure.number();
+  sensor.cadence_s = map.number("cadence_s");
+  if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
+  sensor.first_exposure_s = map.number_or("first_exposure_s", 0.0);
+  if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
+    exposure.fail("the first exposure ends after the run does");
+}
+
+SensorConfig read_own_sensor(const YamlValue& value, SimTime duration, const EarthConfig& earth) {
+  YamlMap map(value, own_sensor_section());
+  SensorConfig sensor{.where = value.place()};
+  sensor.ellipsoid = earth.ellipsoid;
+  sensor.name = map.require("name").text();
+  const YamlValue node = map.require("node");
+  sensor.observing = {.node = node.text(),
+                      .where = node.place(),
+                      .truth = map.flag_or("truth", false),
+                      .half_angle_deg = map.number_or("half_angle_deg", 180.0)};
+  read_place(map, value, sensor);
+  read_exposures(map, duration, sensor);
+  map.done();
+  return sensor;
+}
+
 const Section& detection_section() {
   static const Section section{
       "detection",
@@ -153,6 +195,33 @@ void read_detection(const YamlValue& value, SensorConfig& sensor) {
   map.done();
 }
 
+// Keys that sensors with a camera share with those that are a program.
+Key name_key() {
+  return required("name", form::text(),
+                  "A unique name of 1 to 64 letters, digits, - and _. It names the directory of "
+                  "the sensor's products.");
+}
+Key site_key() {
+  return optional("site", form::text(preset_names("sites")) | form::map(site_section),
+                  "The place on the ground: a name (`dmise list sites`), a file, or coordinates.");
+}
+Key platform_key() {
+  return optional("platform", form::text(),
+                  "Catalogue number or name of the object that carries the sensor.");
+}
+Key exposure_key() {
+  return required("exposure_s", form::number(1e-6, 3600.0),
+                  "Length of an exposure [s], at most the cadence.");
+}
+Key cadence_key() {
+  return required("cadence_s", form::number(1e-3, 86400.0),
+                  "Time from the beginning of an exposure to that of the next [s].");
+}
+Key first_exposure_key() {
+  return optional("first_exposure_s", form::not_negative(),
+                  "Beginning of the first exposure after the start of the run [s].", "0");
+}
+
 }  // namespace
 
 const Section& site_section() {
@@ -168,27 +237,32 @@ const Section& site_section() {
   return section;
 }
 
+const Section& own_sensor_section() {
+  static const Section section{
+      "own_sensor",
+      "A sensor of one's own: a program that says what it observes. Either `site` or `platform` is "
+      "needed.",
+      {name_key(),
+       required("node", form::text(), "One of `nodes`, which is asked at each exposure."),
+       site_key(), platform_key(), exposure_key(), cadence_key(), first_exposure_key(),
+       optional("truth", form::flag(),
+                "Whether the program is told the true positions and velocities of all objects.",
+                "off"),
+       optional("half_angle_deg", form::above(0.0, 180.0),
+                "Half angle of the cone about its boresight that contains its field [deg].",
+                "180")}};
+  return section;
+}
+
 const Section& sensor_section() {
   static const Section section{
       "sensor", "A camera at a site or aboard an object. Either `site` or `platform` is needed.",
       with_keys(
-          {required("name", form::text(),
-                    "A unique name of 1 to 64 letters, digits, - and _. It names the directory of "
-                    "the sensor's products."),
-           optional(
-               "site", form::text(preset_names("sites")) | form::map(site_section),
-               "The place on the ground: a name (`dmise list sites`), a file, or coordinates."),
-           optional("platform", form::text(),
-                    "Catalogue number or name of the object that carries the sensor."),
+          {name_key(), site_key(), platform_key(),
            required("camera", form::text(preset_names("cameras")) | form::map(camera_section),
                     "The camera: a name (`dmise list cameras`), a file, or its keys."),
-           required("pointing", pointing_forms(), "Where the camera points."),
-           required("exposure_s", form::number(1e-6, 3600.0),
-                    "Length of an exposure [s], at most the cadence."),
-           required("cadence_s", form::number(1e-3, 86400.0),
-                    "Time from the beginning of an exposure to that of the next [s]."),
-           optional("first_exposure_s", form::not_negative(),
-                    "Beginning of the first exposure after the start of the run [s].", "0"),
+           required("pointing", pointing_forms(), "Where the camera points."), exposure_key(),
+           cadence_key(), first_exposure_key(),
            optional("detection", form::flag() | form::map(detection_section),
                     "Whether moving objects are detected in the frames, or by what program. By "
                     "default as the scenario says."),
@@ -207,6 +281,7 @@ const Section& sensor_section() {
 
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
                          bool detect, SimTime duration, const EarthConfig& earth) {
+  if (value.is_map() && YamlMap(value).find("node")) return read_own_sensor(value, duration, earth);
   YamlMap map(value, sensor_section());
   SensorConfig sensor;
   sensor.where = value.place();
@@ -219,27 +294,14 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   sensor.detect = detect;
   if (detection) read_detection(*detection, sensor);
   sensor.name = map.require("name").text();
-  const auto site = map.find("site");
-  const auto platform = map.find("platform");
-  if (bool(site) == bool(platform))
-    value.fail(
-        site ? "has site and platform: give either site (on the ground) or platform (an object "
-               "of the catalogue)"
-             : "needs either site (on the ground) or platform (an object of the catalogue)",
-        false);
-  if (site) {
-    sensor.place = read_site(*site);
-  } else {
-    sensor.place = PlatformConfig{printable(platform->text()), platform->place()};
-  }
+  read_place(map, value, sensor);
+  const bool site = std::holds_alternative<SiteConfig>(sensor.place);
   sensor.camera = read_camera(map.require("camera"));
   if (site) check_exclusion_on_ground(map.require("camera"), sensor.camera.exclusion);
-  read_pointing(map.require("pointing"), bool(site), sensor, earth.origin);
+  read_pointing(map.require("pointing"), site, sensor, earth.origin);
   read_instrument(map, sensor.instrument);
+  read_exposures(map, duration, sensor);
   const auto exposure = map.require("exposure_s");
-  sensor.exposure_s = exposure.number();
-  sensor.cadence_s = map.number("cadence_s");
-  if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
   check_exposure(sensor.camera, exposure);
   if (FocusDrift& drift = sensor.camera.optics.spread.drift; drift.any())
     drift.run_s = duration.seconds();
@@ -247,10 +309,6 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
       turn_rate_deg_per_s(sensor.pointing) + sensor.instrument.drift_size_rad_per_s() / deg;
   if (rate_deg_per_s * sensor.exposure_s > most_turn_deg)
     exposure.fail("the camera must turn by no more than 10 deg within an exposure");
-  const auto first = map.find("first_exposure_s");
-  if (first) sensor.first_exposure_s = first->number();
-  if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
-    exposure.fail("the first exposure ends after the run does");
   if (const auto seeing = map.find("seeing")) {
     if (sensor.camera.optics.spread.model == PointSpread::Model::gaussian)
       seeing->fail("needs a camera with psf: diffraction", false);
@@ -260,7 +318,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   if (sensor.atmosphere.refraction)
     sensor.effects.force(AtmosphericRefraction::facts, *sensor.atmosphere.refraction);
   if (const auto mask = map.find("mask_deg")) {
-    if (platform) mask->fail("a mask is for a sensor on the ground", false);
+    if (!site) mask->fail("a mask is for a sensor on the ground", false);
     sensor.mask_deg = mask->number();
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
@@ -268,7 +326,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   check_rows(exposure, sensor, rate_deg_per_s, duration);
   add_blur_of_vibration(map, sensor);
   if (sensor.effects.has(SkyBackground::facts))
-    check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
+    check_sky_in_band(value, sensor.sky, sensor.camera.band, site);
   check_point_spread(value, sensor);
   map.done();
   return sensor;

@@ -141,8 +141,10 @@ std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& 
 #define DMISE_TEXT(key, value) line.field(key, value);
 #define DMISE_WHERE(field_, key) \
   if (d.field_) line.field(key, true);
+#define DMISE_MEASURED(field_, key) \
+  if (d.field_) line.field(key, *d.field_);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
-                         DMISE_TEXT, DMISE_WHERE)
+                         DMISE_TEXT, DMISE_WHERE, DMISE_MEASURED)
 #undef DMISE_VALUE
 #undef DMISE_TIME
 #undef DMISE_NAME
@@ -151,6 +153,7 @@ std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& 
 #undef DMISE_PAIR
 #undef DMISE_TEXT
 #undef DMISE_WHERE
+#undef DMISE_MEASURED
   return line.end();
 }
 
@@ -171,7 +174,8 @@ std::string to_json(const FrameReport& r, const UtcText& utc, const UnknownFacts
                                                {"earth_limb_excludes", r.excluded.earth_limb}};
   for (const auto& [name, is] : rare)
     if (is) line.field(name, true);
-  line.measured("limiting_magnitude", r.limiting_magnitude, measured);
+  line.measured("limiting_magnitude", r.limiting_magnitude,
+                measured && r.limiting_magnitude != 0.0);
   line.measured("background_e", r.background_e, measured);
   line.measured("noise_e", r.noise_e, measured).field("zero_point_mag", r.zero_point_mag);
   line.field("magnitude_system", name_of(r.magnitudes.system));

@@ -99,6 +99,7 @@ void RunReader::read_sensors(std::vector<std::string> wanted) {
   const JsonRecord run(read_text_file(file("run.json")), file("run.json"));
   for (const JsonRecord& sensor : run.object("scenario").objects("sensors")) {
     const auto name = sensor.get<std::string>("name");
+    if (!sensor.has("camera")) continue;
     const auto at = std::find(wanted.begin(), wanted.end(), name);
     if (at == wanted.end() && !wanted.empty()) continue;
     if (at != wanted.end()) {

@@ -25,6 +25,7 @@ void write_images(const RunProducts& run, JsonWriter& json) {
   json.key("images").begin_array();
   for (const RunFrame& f : run.frames) {
     const RunSensor& camera = run.sensor(f.sensor);
+    if (camera.columns == 0) continue;  // no image
     json.begin_object().field("id", image_id(run, f.sensor, f.frame));
     json.field("file_name", f.sensor + "/" + frame_file_name(f.frame))
         .field("width", camera.columns);

@@ -85,6 +85,7 @@ std::vector<ExportedFile> region_files(const ExportRequest& request) {
   std::vector<ExportedFile> files;
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const RunFrame& frame = run.frames[i];
+    if (run.sensor(frame.sensor).columns == 0) continue;  // no image
     const double radius_px = std::max(4.0, 2.0 * frame.psf_fwhm_px);
     std::string image = head + "image\n", sky = head + "icrs\n";
     for (const Region& r : regions[i]) {

@@ -34,6 +34,7 @@ RunSensor sensor_of(const JsonRecord& record, const Ellipsoid& ellipsoid) {
     sensor.site = geodetic_from_itrs(itrs_from_geodetic(*sensor.site));
   }
   const ScoredFrame camera = camera_of(record);
+  if (camera.columns == 0) return sensor;  // a program of the user's
   sensor.columns = camera.columns;
   sensor.rows = camera.rows;
   sensor.psf_fwhm_px = *camera.sigma_px * fwhm_per_sigma;
@@ -58,7 +59,7 @@ RunFrame frame_of(const JsonRecord& report, const RunSensor& sensor) {
              .sensor_velocity_m_per_s = vector("sensor_velocity_gcrs_m_per_s"),
              .psf_fwhm_px = sensor.psf_fwhm_px,
              .zero_point_mag = report.number("zero_point_mag")};
-  f.wcs = wcs_of(report.object("wcs"));
+  if (sensor.columns > 0) f.wcs = wcs_of(report.object("wcs"));
   const auto cd = report.object("wcs").numbers<4>("cd_deg_per_px");
   f.column_step_deg = std::hypot(cd[0], cd[2]);
   f.row_step_deg = std::hypot(cd[1], cd[3]);

@@ -67,6 +67,7 @@ std::vector<ExportedFile> satnet_files(const ExportRequest& request) {
   std::vector<ExportedFile> files;
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const RunFrame& f = run.frames[i];
+    if (run.sensor(f.sensor).columns == 0) continue;  // no image
     const std::string stem = f.sensor + formatted(".%04u", f.frame);
     const std::string source = run.directory + "/" + f.sensor + "/" + frame_file_name(f.frame);
     files.push_back({f.sensor + "/Annotations/" + stem + ".json",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/base/formatted.h"
@@ -17,10 +18,11 @@ namespace {
 constexpr int angle_decimals = 9;  // of a degree: 4 microarcsec
 
 /// One observation of a segment.
-struct Sighting {
+struct Seen {
   SimTime time;
   double ra_rad = 0.0, dec_rad = 0.0;
-  double magnitude = 0.0;
+  double magnitude = 0.0;  // no_magnitude: none
+  std::optional<double> range_m, range_rate_m_per_s;
 };
 
 struct Segment {
@@ -29,7 +31,7 @@ struct Segment {
   const char* quality = nullptr;  // nobody has looked at what a sensor found: RAW
   std::vector<std::string> comments;
   std::vector<std::pair<const char*, std::string>> corrections;
-  std::vector<Sighting> sightings;
+  std::vector<Seen> sightings;
 };
 
 std::string place_comment(const RunSensor& sensor) {
@@ -45,10 +47,18 @@ std::string vector_comment(const char* what, const Vec<Gcrs>& v, const char* uni
          fixed_text(v.y / km, 9) + " " + fixed_text(v.z / km, 9) + " " + unit;
 }
 
+/// What all sightings of a segment have.
+std::string data_types(const Seen& seen) {
+  return std::string("ANGLE_1,ANGLE_2") + (seen.range_m ? ",RANGE" : "") +
+         (seen.range_rate_m_per_s ? ",DOPPLER_INSTANTANEOUS" : "") +
+         (seen.magnitude != no_magnitude ? ",MAG" : "");
+}
+
 void write(const RunProducts& run, const Segment& s, KvnText& kvn) {
   kvn.line("META_START");
   for (const std::string& comment : s.comments) kvn.comment(comment);
-  kvn.key("TRACK_ID", s.track).key("DATA_TYPES", "ANGLE_1,ANGLE_2,MAG").key("TIME_SYSTEM", "UTC");
+  kvn.key("TRACK_ID", s.track).key("DATA_TYPES", data_types(s.sightings.front()));
+  kvn.key("TIME_SYSTEM", "UTC");
   kvn.key("START_TIME", run.utc(s.sightings.front().time));
   kvn.key("STOP_TIME", run.utc(s.sightings.back().time));
   kvn.key("PARTICIPANT_1", s.sensor).key("PARTICIPANT_2", s.object);
@@ -57,13 +67,18 @@ void write(const RunProducts& run, const Segment& s, KvnText& kvn) {
   kvn.key("ANGLE_TYPE", "RADEC").key("REFERENCE_FRAME", "ICRF").key("DATA_QUALITY", s.quality);
   for (const auto& [key, value] : s.corrections) kvn.key(key, value);
   kvn.key("CORRECTIONS_APPLIED", "YES").line("META_STOP").line("DATA_START");
-  for (const Sighting& sighting : s.sightings) {
+  for (const Seen& sighting : s.sightings) {
     const std::string time = run.utc(sighting.time) + " ";
     double ra_deg = std::fmod(sighting.ra_rad / deg + 360.0, 360.0);
     if (ra_deg > 360.0 - 0.5e-9) ra_deg = 0.0;  // it would be rounded to 360, which is out of range
     kvn.key("ANGLE_1", time + fixed_text(ra_deg, angle_decimals));
     kvn.key("ANGLE_2", time + fixed_text(sighting.dec_rad / deg, angle_decimals));
-    kvn.key("MAG", time + fixed_text(sighting.magnitude, 6));
+    if (const auto& range_m = sighting.range_m)
+      kvn.key("RANGE", time + fixed_text(*range_m / km, 9));
+    if (const auto& rate_m_per_s = sighting.range_rate_m_per_s)
+      kvn.key("DOPPLER_INSTANTANEOUS", time + fixed_text(*rate_m_per_s / km, 12));
+    if (sighting.magnitude != no_magnitude)
+      kvn.key("MAG", time + fixed_text(sighting.magnitude, 6));
   }
   kvn.line("DATA_STOP");
 }
@@ -97,9 +112,11 @@ Segment segment_of(const RunProducts& run, const Detection& d) {
                                           fixed_text(d.refraction_parallax_sigma_rad / arcsec, 6)),
                 "sigma of RA cos(DEC) " + fixed_text(sigma_ra / arcsec, 6) + " arcsec, of DEC " +
                     fixed_text(sigma_dec / arcsec, 6) + " arcsec, correlation " +
-                    fixed_text(both > 0.0 ? d.covariance_rad2[1] / both : 0.0, 6) + ", of MAG " +
-                    fixed_text(d.magnitude_sigma, 6) + " in band " + d.band + "; SNR " +
-                    fixed_text(d.snr, 3)};
+                    fixed_text(both > 0.0 ? d.covariance_rad2[1] / both : 0.0, 6) +
+                    (d.magnitude == no_magnitude
+                         ? ""
+                         : ", of MAG " + fixed_text(d.magnitude_sigma, 6) + " in band " + d.band) +
+                    "; SNR " + fixed_text(d.snr, 3)};
   if (d.kind == DetectionKind::streak)
     s.comments.push_back("streak of " + fixed_text(d.length_px, 3) + " px, rate " +
                          fixed_text(d.rate_rad_per_s / arcsec, 6) + " arcsec/s, position angle " +
@@ -109,7 +126,13 @@ Segment segment_of(const RunProducts& run, const Detection& d) {
       {"CORRECTION_ANGLE_1",
        fixed_text(angle_between_rad(d.corrected_ra_rad, d.ra_rad) / deg, angle_decimals)},
       {"CORRECTION_ANGLE_2", fixed_text((d.corrected_dec_rad - d.dec_rad) / deg, angle_decimals)}};
-  s.sightings = {{d.time, d.corrected_ra_rad, d.corrected_dec_rad, d.magnitude}};
+  if (d.range_m)
+    s.comments.push_back("sigma of RANGE " + fixed_text(*d.range_sigma_m / km, 9) + " km");
+  if (d.range_rate_m_per_s)
+    s.comments.push_back("sigma of DOPPLER_INSTANTANEOUS " +
+                         fixed_text(*d.range_rate_sigma_m_per_s / km, 12) + " km/s");
+  s.sightings = {{d.time, d.corrected_ra_rad, d.corrected_dec_rad, d.magnitude, d.range_m,
+                  d.range_rate_m_per_s}};
   return s;
 }
 

@@ -45,7 +45,8 @@ void write(const RunProducts& run, const Detection& d, JsonWriter& json) {
     json.field("raRate", rate_deg * std::sin(d.position_angle_rad) / cos_dec);
     json.field("declinationRate", rate_deg * std::cos(d.position_angle_rad));
   }
-  json.field("mag", d.magnitude).field("magUnc", d.magnitude_sigma);
+  if (d.magnitude != no_magnitude)
+    json.field("mag", d.magnitude).field("magUnc", d.magnitude_sigma);
   json.field("expDuration", frame.exposure_s()).field("trackId", d.id);
   json.field("descriptor", "mag in band " + d.band + "; SNR " + std::to_string(std::lround(d.snr)));
   json.end_object();

@@ -107,7 +107,9 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
   for (std::size_t row = 0; row < frame.sources.size(); ++row) {
     const AngleObservation& seen = frame.sources[row].observation;
     for (const std::uint32_t k : cells.near(seen.direction)) {
-      if (angle_rad(seen.direction, all[k].direction) > all[k].radius_rad || !is_lit(k)) continue;
+      if (angle_rad(seen.direction, all[k].direction) > all[k].radius_rad ||
+          (frame.needs_sunlight && !is_lit(k)))
+        continue;
       auto& [time, direction] = known[k];
       if (direction.range_m == 0 || time != seen.time) {
         direction = predicted(all[k], frame, seen);
@@ -158,6 +160,7 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Candidate& c = all[k];
     if (found[k] || !c.track || c.sigma_rad > certain_sigma_rad || !is_lit(k)) continue;
+    if (!c.track->brightness.is_known()) continue;
     if (!frame.shows(c.direction, edge_px)) continue;
     const double looked = frame.detection_probability(c.track->magnitude(c.range_m), p);
     if (looked > least_looked) c.track->miss(looked);

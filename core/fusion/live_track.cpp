@@ -19,8 +19,14 @@ LiveTrack::LiveTrack(std::uint32_t number, OrbitFilter&& start,
 
 double LiveTrack::existence() const { return 1 / (1 + std::exp(-log_odds)); }
 
-double LiveTrack::magnitude(double range_m) const {
-  return brightness_sum / std::max(1, detections) + brightness_offset(range_m);
+void MeanBrightness::add(double magnitude, double range_m) {
+  if (magnitude == no_magnitude) return;
+  sum += magnitude - brightness_offset(range_m);
+  ++count;
+}
+
+double MeanBrightness::magnitude(double range_m) const {
+  return sum / std::max(1, count) + brightness_offset(range_m);
 }
 
 bool LiveTrack::place_roughly(const ForceModel& forces, SimTime time) {
@@ -40,7 +46,7 @@ double LiveTrack::rough_sigma_m(double noise) const {
 
 void LiveTrack::count(const AngleObservation& observation, double magnitude_seen,
                       const Vec<Gcrs>& position_m) {
-  brightness_sum += magnitude_seen - brightness_offset(norm(position_m - observation.sensor_m));
+  brightness.add(magnitude_seen, norm(position_m - observation.sensor_m));
   ++detections;
   last_seen = std::max(last_seen, observation.time);
   associated.push_back(observation.detection_id);
@@ -84,7 +90,7 @@ Track published(const LiveTrack& track, SimTime time) {
   for (int row = 0, k = 0; row < 6; ++row)
     for (int column = 0; column <= row; ++column, ++k)
       out.covariance[std::size_t(k)] = now.covariance(row, column);
-  if (track.detections > 0) out.magnitude = track.magnitude(standard_range_m);
+  if (track.brightness.is_known()) out.magnitude = track.magnitude(standard_range_m);
   return out;
 }
 

@@ -9,6 +9,20 @@
 
 namespace dmise {
 
+/// Magnitudes by which an object at this range is fainter than one 1000 km away.
+double brightness_offset(double range_m);
+
+/// The mean magnitude at 1000 km of what was detected of an object, where that has one.
+struct MeanBrightness {
+  double sum = 0.0;
+  int count = 0;
+
+  void add(double magnitude, double range_m);
+  bool is_known() const { return count > 0; }
+  /// As if at this range; if nothing was measured, that of an object that is bright.
+  double magnitude(double range_m) const;
+};
+
 /// A track that has not ended.
 struct LiveTrack {
   LiveTrack(std::uint32_t number, OrbitFilter&& start, std::optional<std::size_t> of_catalogue);
@@ -21,7 +35,7 @@ struct LiveTrack {
   double log_odds = 0.0;  // of its existence
   int detections = 0;
   SimTime last_seen;
-  double brightness_sum = 0.0;  // magnitudes at 1000 km of its detections
+  MeanBrightness brightness;
   double innovation_d2 = 0.0;
   std::vector<std::string> associated;  // since the last tick
   bool changed = true;
@@ -31,7 +45,7 @@ struct LiveTrack {
   double sigma_m = 0.0, sigma_m_per_s = 0.0, age_s = 0.0;
 
   double existence() const;
-  double magnitude(double range_m) const;
+  double magnitude(double range_m) const { return brightness.magnitude(range_m); }
   /// Propagates the state to a time as `rough`. False if it has no path.
   bool place_roughly(const ForceModel& forces, SimTime time);
   /// Bound of the error of `rough` [m], one sigma.
@@ -46,9 +60,6 @@ struct LiveTrack {
   /// A look with this probability of detection found nothing.
   void miss(double detection_probability);
 };
-
-/// Magnitudes by which an object at this range is fainter than one 1000 km away.
-double brightness_offset(double range_m);
 
 /// The state of a track at a tick as it is published.
 Track published(const LiveTrack& track, SimTime time);

@@ -61,6 +61,11 @@ SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>
       .rows = rows,
       .limiting_magnitude = report.limiting_magnitude - report.magnitudes.solar_colour_mag,
       .searched = !report.detection_off};
+  if (columns == 0) {
+    out.wcs.reset();
+    out.searched = report.limiting_magnitude != 0.0;
+    out.needs_sunlight = false;
+  }
   for (const Detection& d : detections)
     if (auto observation = angle_observation(d)) {
       observation->covariance_rad2[0] += pointing_sigma_rad * pointing_sigma_rad;

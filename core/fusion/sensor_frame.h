@@ -13,7 +13,7 @@ namespace dmise {
 /// A direction in which a frame shows something.
 struct SeenSource {
   AngleObservation observation;
-  double magnitude = 0.0;
+  double magnitude = 0.0;  // `no_magnitude`: none was measured
   bool star_like = false;  // may be a star: begins no track
 };
 
@@ -29,6 +29,7 @@ struct SensorFrame {
   int columns = 0, rows = 0;        // without a wcs the cone is the field
   double limiting_magnitude = 0.0;  // V-solar, as those of `sources`
   bool searched = true;             // false: nothing can be concluded from what it does not show
+  bool needs_sunlight = true;       // false: it also sees what the Sun does not shine on
   std::vector<SeenSource> sources;
 
   /// Whether a direction is in the frame, at least `margin_px` from its edge.
@@ -40,9 +41,10 @@ struct SensorFrame {
   double solid_angle_sr() const;
 };
 
-/// A frame with its detections. Those whose numbers are not usable are left out. `half_angle_rad`:
-/// of a cone about the boresight that contains the field. `pointing_sigma_rad`: error of its
-/// directions, on each axis, that the detections' covariances lack.
+/// A frame with its detections. Those whose numbers are not usable are left out. `columns` and
+/// `rows` are 0 of a sensor of the user's, which has no image and may see without sunlight.
+/// `half_angle_rad`: of a cone about the boresight that contains the field. `pointing_sigma_rad`:
+/// error of its directions, on each axis, that the detections' covariances lack.
 SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>& detections,
                          int columns, int rows, double half_angle_rad,
                          double pointing_sigma_rad = 0.0);

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/base/sim_time.h"
@@ -12,6 +13,9 @@ namespace dmise {
 enum class DetectionKind : std::uint8_t { point, streak };
 /// Instant of the exposure that a time or direction refers to.
 enum class ExposureEpoch : std::uint8_t { start, middle, end };
+
+/// The magnitude of a detection without one.
+inline constexpr double no_magnitude = 99.0;
 
 /// One moving or point-like source detected in one frame, from the counts image and its header
 /// alone. Pixels: (0, 0) is the centre of the first pixel. Directions: RA/Dec in ICRS from the
@@ -48,7 +52,12 @@ struct Detection {
   // Mean and standard deviation of that angle over altitudes from 300 km to GEO, uniform in their
   // logarithm; corrected_* are raised by the mean.
   double refraction_parallax_rad = 0.0, refraction_parallax_sigma_rad = 0.0;
-  // Above the atmosphere, by the header's zero point.
+  // Of a sensor that measures them: distance from the sensor to where the light or the echo left
+  // the object, along corrected_*, and its derivative by the time of reception, with the motion of
+  // the sensor. Each has a sigma.
+  std::optional<double> range_m, range_sigma_m;
+  std::optional<double> range_rate_m_per_s, range_rate_sigma_m_per_s;
+  // Above the atmosphere, by the header's zero point; `no_magnitude` if its sensor measures none.
   double magnitude = 0.0;
   MagnitudeSystem magnitude_system = MagnitudeSystem::v_solar;
   double magnitude_sigma = 0.0;

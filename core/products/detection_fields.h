@@ -12,10 +12,12 @@
 //   PAIR(x, y, key)             two numbers, an array in JSON
 //   TEXT(key, value)            a constant, only in JSON
 //   WHERE(field, key)           a flag that is in JSON only where it is set
+//   MEASURED(field, key)        a number that few sensors measure: absent in JSON and on the wire
+//                               where it is empty
 // A field on the wire has the name of the member. To add one: the member, its row here, and its
 // field in proto/dmise/v1/detection.proto; core/detection/describe.cpp computes it.
 // clang-format off
-#define DMISE_DETECTION_FIELDS(VALUE, TIME, NAME, LIST, VECTOR, PAIR, TEXT, WHERE)      \
+#define DMISE_DETECTION_FIELDS(VALUE, TIME, NAME, LIST, VECTOR, PAIR, TEXT, WHERE, MEASURED) \
   VALUE(id, "id", 1)                                                                    \
   VALUE(sensor, "sensor", 1)                                                            \
   VALUE(frame, "frame", 1)                                                              \
@@ -63,5 +65,9 @@
   VALUE(saturated, "saturated", 1)                                                      \
   VALUE(at_edge, "at_edge", 1)                                                          \
   VALUE(star_like, "star_like", 1)                                                      \
-  WHERE(excluded, "excluded")
+  WHERE(excluded, "excluded")                                                           \
+  MEASURED(range_m, "range_m")                                                          \
+  MEASURED(range_sigma_m, "range_sigma_m")                                              \
+  MEASURED(range_rate_m_per_s, "range_rate_m_per_s")                                    \
+  MEASURED(range_rate_sigma_m_per_s, "range_rate_sigma_m_per_s")
 // clang-format on

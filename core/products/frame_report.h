@@ -19,7 +19,7 @@ struct FrameReport {
   double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;  // ICRS, at mid exposure
   Wcs wcs;
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // at mid exposure
-  double limiting_magnitude = 0.0;  // of a point source at SNR = detection threshold
+  double limiting_magnitude = 0.0;  // of a point source at SNR = detection threshold; 0: unknown
   double background_e = 0.0;        // median [e-/px]
   double noise_e = 0.0;             // median of the per-pixel noise [e-]
   double zero_point_mag = 0.0;      // magnitude of a source of 1 e-/s

@@ -36,7 +36,8 @@ ReportSensor sensor_of(const JsonRecord& record) {
   return {.name = record.get<std::string>("name"),
           .site = site_of(record),
           .platform = text_or_empty(record, "platform"),
-          .camera = text_or_empty(record.object("camera"), "name"),
+          .camera = record.has("camera") ? text_or_empty(record.object("camera"), "name")
+                                         : "node " + text_or_empty(record, "node"),
           .exposure_s = number_or(record, "exposure_s", 0.0),
           .cadence_s = number_or(record, "cadence_s", 0.0),
           .camera_facts = camera_of(record)};

@@ -200,13 +200,16 @@ Detection detection_of(const JsonRecord& record) {
   }
 #define DMISE_TEXT(key, value)
 #define DMISE_WHERE(field, key) d.field = record.has(key) && record.get<bool>(key);
+#define DMISE_MEASURED(field, key) \
+  if (record.has(key)) d.field = record.number(key);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
-                         DMISE_TEXT, DMISE_WHERE)
+                         DMISE_TEXT, DMISE_WHERE, DMISE_MEASURED)
 #undef DMISE_VALUE
 #undef DMISE_TIME
 #undef DMISE_NAME
 #undef DMISE_LIST
 #undef DMISE_VECTOR
+#undef DMISE_MEASURED
   return d;
 }
 

@@ -67,6 +67,7 @@ ScoredFrame frame_of(const JsonRecord& report) {
 }
 
 ScoredFrame camera_of(const JsonRecord& sensor) {
+  if (!sensor.has("camera")) return {};
   const JsonRecord camera = sensor.object("camera");
   Optics optics{.focal_length_m = camera.number("focal_length_m"),
                 .aperture_m = camera.number("aperture_m"),
@@ -102,6 +103,7 @@ ScoreInput read_run(const std::string& directory, const ReadProgress& progress) 
     frames.add(record, "frame", f.sensor + "/" + f.frame);
     f.columns = camera->second.columns;
     f.rows = camera->second.rows;
+    if (f.columns == 0) f.searched = false;  // truth is compared with images
     if (!f.sigma_px) f.sigma_px = camera->second.sigma_px;
     in.frames.push_back(std::move(f));
   });

@@ -21,7 +21,7 @@ class JsonRecord;
 /// The frame of a report (`FileDetections::report`, a line of frames.jsonl), without its size and,
 /// unless the report states it, its PSF.
 ScoredFrame frame_of(const JsonRecord& report);
-/// Size and PSF of a frame of a sensor, as run.json's scenario describes it.
+/// Size and PSF of a frame of a sensor, as run.json's scenario describes it; none without a camera.
 ScoredFrame camera_of(const JsonRecord& sensor);
 /// Where such a sensor is, over the scenario's ellipsoid, which is not set; none in orbit.
 std::optional<Site> site_of(const JsonRecord& sensor);

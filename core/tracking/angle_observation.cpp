@@ -58,6 +58,11 @@ std::string_view fault_of(const AngleObservation& o) {
   if (!std::isfinite(e) || !std::isfinite(c) || !std::isfinite(n) || !(e > 0) || !(n > 0) ||
       !(e * n - c * c > 0))
     return "the covariance is not positive definite";
+  for (const auto& along : {o.range_m, o.range_rate_m_per_s})
+    if (along && !(std::isfinite(along->value) && std::isfinite(along->sigma) && along->sigma > 0))
+      return "the range or its rate has no standard deviation";
+  if (o.range_rate_m_per_s && !finite(o.sensor_m_per_s))
+    return "the sensor's velocity is not known";
   return {};
 }
 
@@ -70,6 +75,10 @@ Outcome<AngleObservation> angle_observation(const Detection& detection) {
   out.covariance_rad2 = detection.covariance_rad2;
   out.sensor = detection.sensor;
   out.detection_id = detection.id;
+  if (detection.range_m) out.range_m = {*detection.range_m, *detection.range_sigma_m};
+  if (detection.range_rate_m_per_s)
+    out.range_rate_m_per_s = {*detection.range_rate_m_per_s, *detection.range_rate_sigma_m_per_s};
+  out.sensor_m_per_s = detection.sensor_velocity_m_per_s;
   const double offset_m = norm(detection.refraction_offset_m);
   if (!std::isfinite(offset_m)) return Result::refused("the offset of refraction is not finite");
   if (offset_m > 0) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
 #include "core/products/detection.h"
+#include "core/products/measured_number.h"
 #include "core/tracking/outcome.h"
 
 namespace dmise {
@@ -15,6 +17,7 @@ namespace dmise {
 /// A direction in which a sensor saw an object. The light that arrived at `time` left the object
 /// range / c earlier: with r(t) the object's path, `direction` is that of r(time - range / c) -
 /// sensor_m. Aberration is not in it.
+/// Some sensors measure the length of that line as well, or its derivative by `time`.
 struct AngleObservation {
   SimTime time;                             // of reception
   Vec<Gcrs> sensor_m;                       // where the line of sight begins, at `time`
@@ -22,6 +25,8 @@ struct AngleObservation {
   std::array<double, 3> covariance_rad2{};  // var east, cov, var north on the sky: ra cos dec, dec
   std::string sensor;                       // name of the sensor
   std::string detection_id;                 // of the detection, "<sensor>/<frame>/<index>"
+  std::optional<MeasuredNumber> range_m = {}, range_rate_m_per_s = {};
+  Vec<Gcrs> sensor_m_per_s = {};  // with range_rate_m_per_s
 
   bool operator==(const AngleObservation&) const = default;
 };

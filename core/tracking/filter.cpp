@@ -31,6 +31,8 @@ bool before(const AngleObservation& a, const AngleObservation& b) {
 /// orbit it turns by 7 deg.
 constexpr double noise_span_s = 120.0;
 
+constexpr double range_gate_sigmas = 6.0;
+
 /// The end of the next part of the way from `from` to `to`.
 SimTime next_noise_time(SimTime from, SimTime to, bool noise) {
   const SimTime span = sim_seconds(noise_span_s);
@@ -133,9 +135,33 @@ struct OrbitFilter::Body {
       found = innovation_of(seen.direction, next.observation);
       next.belief = points.updated(seen, next.observation, found.residual_rad);
     });
+    if (!take_range(next)) return Result::refused("the range is not that of the object");
     if (!is_sane(next.belief.mean) || !next.belief.root.allFinite())
       return Result::refused("the observation leads to a state out of range");
     return found;
+  }
+
+  /// Takes range and range rate of an event into what is believed after its direction. False if
+  /// one is not within the gate.
+  bool take_range(Event& event) const {
+    const AngleObservation& seen = event.observation;
+    const Eigen::Vector3d sensor_m = eigen_of(seen.sensor_m);
+    const auto take = [&](const std::optional<MeasuredNumber>& measured, const auto& number_of) {
+      return !measured || with_rows([&](auto n) {
+        const auto after = SigmaPoints<n>(rows, event.belief)
+                               .updated(
+                                   [&](const Eigen::Vector3d& r, const Eigen::Vector3d& v) {
+                                     return number_of(line_of_light(r, v, sensor_m));
+                                   },
+                                   *measured, range_gate_sigmas);
+        if (after) event.belief = *after;
+        return after.has_value();
+      });
+    };
+    return take(seen.range_m, [](const LineOfLight& line) { return line.range_m; }) &&
+           take(seen.range_rate_m_per_s, [&](const LineOfLight& line) {
+             return range_rate_m_per_s(line, eigen_of(seen.sensor_m_per_s));
+           });
   }
 
   /// Inserts an observation at its place in time and processes those after it again.

@@ -36,6 +36,13 @@ inline LineOfLight line_of_light(const Eigen::Vector3d& position_m,
   return out;
 }
 
+/// Derivative of the range by the time of reception, for a sensor with this velocity.
+inline double range_rate_m_per_s(const LineOfLight& line, const Eigen::Vector3d& sensor_m_per_s) {
+  const Eigen::Vector3d towards = line.line_m / line.range_m;
+  return towards.dot(line.velocity_m_per_s - sensor_m_per_s) /
+         (1 + towards.dot(line.velocity_m_per_s) / speed_of_light_m_per_s);
+}
+
 /// Position `dt_s` after a state, by its velocity and the attraction of the Earth's centre: for
 /// some seconds.
 inline Vec<Gcrs> position_after_m(const Vec<Gcrs>& r, const Vec<Gcrs>& v, double dt_s) {

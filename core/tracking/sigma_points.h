@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -154,6 +155,41 @@ class SigmaPoints {
     OrbitVector mean = seen.mean;
     for (int i = 0; i < N; ++i)
       mean[rows_.rows[std::size_t(i)]] += joint(2 + i, 0) * u + joint(2 + i, 1) * v;
+    RootGaussian out{state_of(mean, time_)};
+    out.root.template topLeftCorner<N, N>() = joint.template bottomRightCorner<N, N>();
+    return out;
+  }
+
+  /// The Gaussian after a number was measured that `of` has of position, velocity and time. Nothing
+  /// if it is more than `gate_sigmas` from what is expected.
+  template <class NumberOf>
+  std::optional<RootGaussian> updated(const NumberOf& of, const MeasuredNumber& measured,
+                                      double gate_sigmas) const {
+    std::array<double, std::size_t(count)> numbers;
+    double mean_number = 0.0;
+    for (int k = 0; k < count; ++k) {
+      double& number = numbers[std::size_t(k)];
+      number = of(points_.template block<3, 1>(0, k), points_.template block<3, 1>(3, k));
+      mean_number += (k == 0 ? middle_weight : weight) * number;
+    }
+    const OrbitVector points_mean = mean_of_points();
+    constexpr int width = N + 1;
+    Eigen::Matrix<double, count + 1, width> stack;
+    stack.template bottomRows<1>().setZero();
+    stack(count, 0) = measured.sigma;
+    for (int k = 0; k < count; ++k) {
+      const double root = std::sqrt(k == 0 ? middle_weight : weight);
+      stack(k, 0) = root * (numbers[std::size_t(k)] - mean_number);
+      for (int i = 0; i < N; ++i) {
+        const int row = rows_.rows[std::size_t(i)];
+        stack(k, 1 + i) = root * (points_(row, k) - points_mean[row]);
+      }
+    }
+    const Eigen::Matrix<double, width, width> joint = triangle<count + 1, width>(stack);
+    const double sigmas = (measured.value - mean_number) / joint(0, 0);
+    if (!(std::fabs(sigmas) <= gate_sigmas)) return std::nullopt;
+    OrbitVector mean = points_mean;
+    for (int i = 0; i < N; ++i) mean[rows_.rows[std::size_t(i)]] += joint(1 + i, 0) * sigmas;
     RootGaussian out{state_of(mean, time_)};
     out.root.template topLeftCorner<N, N>() = joint.template bottomRightCorner<N, N>();
     return out;

@@ -29,6 +29,10 @@ FilterTracker::FilterTracker(const Scenario& scenario, const ObjectRoster& known
               scenario.fusion->settings) {
   for (const SensorConfig& sensor : scenario.sensors) {
     if (!sensor.detect) continue;
+    if (const auto& observing = sensor.observing) {
+      cameras_[sensor.name] = {0, 0, observing->half_angle_deg * deg};
+      continue;
+    }
     const Optics& optics = sensor.camera.optics;
     cameras_[sensor.name] = {optics.columns, optics.rows,
                              std::min(half_diagonal_rad(optics) + axis_slack_rad, pi)};

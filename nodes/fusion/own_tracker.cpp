@@ -54,19 +54,10 @@ bool is_cued(const SensorConfig& sensor) {
 /// Adds what a tracker is told of a sensor.
 void add_sensor(const SensorConfig& sensor, v1::OwnNodeTracking& tracking) {
   v1::OwnNodeSensor& one = *tracking.add_sensors();
-  one.set_name(sensor.name);
-  if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
-    one.mutable_site()->set_latitude_deg(site->latitude_deg);
-    one.mutable_site()->set_longitude_deg(site->longitude_deg);
-    one.mutable_site()->set_height_m(site->height_m);
-  } else {
-    one.set_platform(std::get<PlatformConfig>(sensor.place).object);
-  }
+  describe_sensor(sensor, one);
   one.set_columns(std::uint32_t(sensor.camera.optics.columns));
   one.set_rows(std::uint32_t(sensor.camera.optics.rows));
   one.set_cued(is_cued(sensor));
-  one.set_exposure_s(sensor.exposure_s);
-  one.set_cadence_s(sensor.cadence_s);
 }
 
 }  // namespace
@@ -213,10 +204,10 @@ void OwnTracker::count(Track& track, Live& live, Sources& sources) const {
     const Detection& d = *source->second.detection;
     const Vec<Gcrs> then =
         track.position_m + track.velocity_m_per_s * (d.time - track.time).seconds();
-    live.brightness_sum += d.magnitude - brightness_offset(norm(then - d.sensor_position_m));
+    live.brightness.add(d.magnitude, norm(then - d.sensor_position_m));
     track.last_seen = ++track.detections == 1 ? d.time : std::max(track.last_seen, d.time);
   }
-  if (track.detections > 0) track.magnitude = live.brightness_sum / track.detections;
+  if (live.brightness.is_known()) track.magnitude = live.brightness.magnitude(1e6);
 }
 
 std::vector<CueWish> OwnTracker::wishes_of(const v1::OwnNodePoints& points) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/config/scenario.h"
+#include "core/fusion/live_track.h"
 #include "core/time/clock.h"
 #include "core/tracking/forces.h"
 #include "nodes/environment/environment_actor.h"
@@ -37,7 +38,7 @@ class OwnTracker : public Tracker {
  private:
   struct Live {
     Track track;  // as it was last
-    double brightness_sum = 0.0;
+    MeanBrightness brightness;
   };
   struct Source {
     const Detection* detection;

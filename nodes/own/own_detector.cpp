@@ -1,6 +1,5 @@
 #include "nodes/own/own_detector.h"
 
-#include <algorithm>
 #include <bit>
 #include <memory>
 #include <span>
@@ -11,10 +10,6 @@ namespace dmise {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-
-const OwnNode& detecting_node(const Scenario& scenario, const SensorConfig& sensor) {
-  return *std::ranges::find(scenario.own_nodes, sensor.detector->node, &OwnNode::name);
-}
 
 MeasuredPlace place_of(const v1::OwnNodePlace& place) {
   return {{place.x_px(), place.y_px()}, {place.var_x_px2(), place.cov_xy_px2(), place.var_y_px2()}};
@@ -35,72 +30,45 @@ std::vector<MeasuredSource> sources_of(const v1::OwnNodeFound& found) {
   return sources;
 }
 
-}  // namespace
-
-OwnDetector::OwnDetector(const Scenario& scenario, const SensorConfig& sensor,
-                         OwnNodeSettings settings)
-    : scenario_(scenario),
-      node_(detecting_node(scenario, sensor)),
-      sensor_(sensor.name),
-      settings_(std::move(settings)),
-      restarts_(scenario.network, node_.name, settings_) {}
-
-std::optional<std::vector<MeasuredSource>> OwnDetector::find(const CountImage& counts,
-                                                             const FrameHeader& header) {
-  const v1::OwnNodeFrame frame = frame_of(counts, header);
-  const std::string place =
-      "frame " + std::to_string(frame.frame()) + " (tick " + std::to_string(frame.tick()) + ")";
-  while (true) {
-    try {
-      return ask(frame, counts);
-    } catch (const ProgramLost& lost) {
-      program_.reset();
-      restarts_.after(lost, place);
-    } catch (const Error& error) {
-      throw Error(settings_.error_prefix + place + ": " + error.what());
-    }
-  }
-}
-
-std::optional<std::vector<MeasuredSource>> OwnDetector::ask(const v1::OwnNodeFrame& frame,
-                                                            const CountImage& counts) {
-  if (!program_) {
-    v1::OwnNodeBegin begin = begin_of(scenario_, node_);
-    begin.set_sensor(sensor_);
-    program_.emplace(program_settings(scenario_, node_, settings_), std::move(begin),
-                     restarts_.any());
-  }
-  const auto bytes = std::as_bytes(std::span(counts.pixels));
-  const auto found =
-      program_->find(frame, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  if (!found) return std::nullopt;
-  auto sources = sources_of(*found);
-  check_sources(sources, counts.columns, counts.rows);
-  return sources;
-}
-
-v1::OwnNodeFrame OwnDetector::frame_of(const CountImage& counts, const FrameHeader& header) const {
+v1::OwnNodeFrame frame_of(const CountImage& counts, const FrameHeader& header, Tick tick) {
   v1::OwnNodeFrame frame;
-  frame.set_sensor(sensor_);
+  frame.set_sensor(header.sensor);
   frame.set_frame(header.frame);
-  const Tick tick = (header.end.ns + scenario_.tick.ns - 1) / scenario_.tick.ns;
-  frame.set_tick(std::clamp<Tick>(tick, 0, scenario_.last_tick()));
+  frame.set_tick(tick);
   frame.set_columns(std::uint32_t(counts.columns));
   frame.set_rows(std::uint32_t(counts.rows));
   for (auto& card : frame_file_cards(counts, header)) frame.add_cards(std::move(card));
   return frame;
 }
 
+std::optional<std::vector<MeasuredSource>> find(OwnProgram& program, const v1::OwnNodeFrame& frame,
+                                                const CountImage& counts) {
+  const auto bytes = std::as_bytes(std::span(counts.pixels));
+  const auto found =
+      program.find(frame, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  if (!found) return std::nullopt;
+  auto sources = sources_of(*found);
+  check_sources(sources, counts.columns, counts.rows);
+  return sources;
+}
+
+}  // namespace
+
 SourceFinder own_finder(const Scenario& scenario, const std::string& sensor,
                         const std::string& directory, OwnNodeSettings settings) {
   const SensorConfig& config = sensor_named(scenario, sensor);
   if (!config.detector) return {};
-  const std::string& node = config.detector->node;
-  settings.log_path = directory + "/logs/" + node + "-" + sensor + ".log";
-  settings.error_prefix += node + ": ";
-  return [detector = std::make_shared<OwnDetector>(scenario, config, std::move(settings))](
-             const CountImage& counts, const FrameHeader& header) {
-    return detector->find(counts, header);
+  const auto program =
+      std::make_shared<FrameProgram>(scenario, config, directory, std::move(settings));
+  return [program, sensor](const CountImage& counts, const FrameHeader& header) {
+    const v1::OwnNodeFrame frame = frame_of(counts, header, program->tick_after(header.end));
+    const auto beginning = [&] {
+      FrameProgram::Beginning told{program->begin()};
+      told.begin.set_sensor(sensor);
+      return told;
+    };
+    return program->ask(header.frame, header.end, beginning,
+                        [&](OwnProgram& started) { return find(started, frame, counts); });
   };
 }
 

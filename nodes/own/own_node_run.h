@@ -22,6 +22,9 @@ struct OwnNodeSettings {
 /// What a program is told as it begins, without its objects.
 v1::OwnNodeBegin begin_of(const Scenario& scenario, const OwnNode& node);
 
+/// Adds what a program is told of a sensor: where it is, and when it observes.
+void describe_sensor(const SensorConfig& sensor, v1::OwnNodeSensor& told);
+
 ProgramSettings program_settings(const Scenario& scenario, const OwnNode& node,
                                  const OwnNodeSettings& settings);
 
@@ -61,6 +64,54 @@ class OwnRestarts {
   std::string node_, error_prefix_;
   std::function<void(const std::string&)> note_;
   int done_ = 0;
+};
+
+/// A program that is asked for one frame after another by the process of a sensor. It is started at
+/// the first. Under `on_silent_node: restart` one that dies or is silent is started again, and
+/// asked for the same frame.
+class FrameProgram {
+ public:
+  /// `scenario` must outlive it. The log is that of the node and the sensor, below `directory`.
+  FrameProgram(const Scenario& scenario, const SensorConfig& sensor, const std::string& directory,
+               OwnNodeSettings settings);
+
+  /// What a program is told as it begins, with the frames after that.
+  struct Beginning {
+    v1::OwnNodeBegin begin;
+    std::vector<std::string> more = {};
+  };
+  const v1::OwnNodeBegin& begin() const { return begin_; }
+  /// The first tick that is not before the end of an exposure.
+  Tick tick_after(SimTime end) const;
+
+  /// Returns what `answer_of` has from the program. Throws `Error` with node, frame and tick.
+  template <class BeginningOf, class AnswerOf>
+  auto ask(std::uint32_t frame, SimTime end, const BeginningOf& beginning_of,
+           const AnswerOf& answer_of) {
+    const std::string place =
+        "frame " + std::to_string(frame) + " (tick " + std::to_string(tick_after(end)) + ")";
+    while (true) {
+      try {
+        if (!program_) start(beginning_of());
+        return answer_of(*program_);
+      } catch (const ProgramLost& lost) {
+        program_.reset();
+        restarts_.after(lost, place);
+      } catch (const Error& error) {
+        throw Error(settings_.error_prefix + place + ": " + error.what());
+      }
+    }
+  }
+
+ private:
+  void start(const Beginning& beginning);
+
+  const Scenario& scenario_;
+  OwnNode node_;
+  OwnNodeSettings settings_;
+  v1::OwnNodeBegin begin_;
+  std::optional<OwnProgram> program_;
+  OwnRestarts restarts_;
 };
 
 }  // namespace dmise

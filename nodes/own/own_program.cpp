@@ -243,6 +243,16 @@ std::optional<v1::OwnNodeFound> OwnProgram::find(const v1::OwnNodeFrame& frame,
   return std::move(*got->head.mutable_found());
 }
 
+std::optional<v1::OwnNodeObserved> OwnProgram::observe(const v1::OwnNodeObserve& exposure,
+                                                       Frames more) {
+  v1::OwnNodeRequest request;
+  *request.mutable_observe() = exposure;
+  if (!send(request, settings_.silent_after_s, more)) return std::nullopt;
+  auto got = heard("exposure", v1::OwnNodeAnswer::kObserved, 1);
+  if (!got) return std::nullopt;
+  return std::move(*got->head.mutable_observed());
+}
+
 std::optional<OwnProgram::Tracked> OwnProgram::track(const v1::OwnNodeTrack& track,
                                                      Frames exposures) {
   v1::OwnNodeRequest request;

@@ -64,6 +64,8 @@ class OwnProgram {
   std::optional<Stepped> stepped();
   /// What it finds in a frame with these counts; nothing after the stop.
   std::optional<v1::OwnNodeFound> find(const v1::OwnNodeFrame& frame, std::string_view counts);
+  /// What it observes in an exposure; nothing after the stop. `more`: the frames after the request.
+  std::optional<v1::OwnNodeObserved> observe(const v1::OwnNodeObserve& exposure, Frames more);
 
   struct Tracked {
     TrackSet tracks;

@@ -24,14 +24,17 @@ void put_detection(v1::Detection* message, const Detection& d) {
 #define DMISE_LIST(field, ...) put(message->mutable_##field(), d.field);
 #define DMISE_PAIR(x, y, key) message->set_##x(d.x), message->set_##y(d.y);
 #define DMISE_WHERE(field, key) message->set_##field(d.field);
+#define DMISE_MEASURED(field, key) \
+  if (d.field) message->set_##field(*d.field);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_LIST, DMISE_PAIR,
-                         DMISE_NONE, DMISE_WHERE)
+                         DMISE_NONE, DMISE_WHERE, DMISE_MEASURED)
 #undef DMISE_VALUE
 #undef DMISE_TIME
 #undef DMISE_NAME
 #undef DMISE_LIST
 #undef DMISE_PAIR
 #undef DMISE_WHERE
+#undef DMISE_MEASURED
 }
 
 Detection take_detection(const v1::Detection& message) {
@@ -45,8 +48,10 @@ Detection take_detection(const v1::Detection& message) {
 #define DMISE_VECTOR(field, key) d.field = take_vec<Gcrs>(message.field(), #field);
 #define DMISE_PAIR(x, y, key) d.x = message.x(), d.y = message.y();
 #define DMISE_WHERE(field, key) d.field = message.field();
+#define DMISE_MEASURED(field, key) \
+  if (message.has_##field()) d.field = message.field();
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
-                         DMISE_NONE, DMISE_WHERE)
+                         DMISE_NONE, DMISE_WHERE, DMISE_MEASURED)
 #undef DMISE_NONE
 #undef DMISE_VALUE
 #undef DMISE_TIME
@@ -55,6 +60,7 @@ Detection take_detection(const v1::Detection& message) {
 #undef DMISE_VECTOR
 #undef DMISE_PAIR
 #undef DMISE_WHERE
+#undef DMISE_MEASURED
   return d;
 }
 

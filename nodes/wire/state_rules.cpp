@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "core/base/units.h"
 #include "core/products/detection_fields.h"
@@ -182,14 +183,21 @@ void check(const Detection& d) {
   not_negative(d.magnitude_sigma, "magnitude_sigma");
   not_negative(d.length_px, "length_px");
   not_negative(d.rate_rad_per_s, "rate_rad_per_s");
+  for (const auto& [value, sigma, field] :
+       {std::tuple(&d.range_m, &d.range_sigma_m, "range_sigma_m"),
+        std::tuple(&d.range_rate_m_per_s, &d.range_rate_sigma_m_per_s, "range_rate_sigma_m_per_s")})
+    if (value->has_value() != sigma->has_value() || !(sigma->value_or(1.0) > 0.0))
+      refuse(field, "must be > 0, where there is what it is of");
 #define DMISE_NONE(...)
 #define DMISE_VALUE(field, ...) finite_number(d.field, #field);
 #define DMISE_PAIR(x, y, key) finite(d.x, #x), finite(d.y, #y);
+#define DMISE_MEASURED(field, key) finite(d.field.value_or(0.0), #field);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_PAIR,
-                         DMISE_NONE, DMISE_NONE)
+                         DMISE_NONE, DMISE_NONE, DMISE_MEASURED)
 #undef DMISE_NONE
 #undef DMISE_VALUE
 #undef DMISE_PAIR
+#undef DMISE_MEASURED
 }
 
 void check(const DetectionSet& set) {

@@ -13,6 +13,7 @@
 #include "core/plan/cost_factors.h"
 #include "core/products/frame_file.h"
 #include "nodes/own/own_detector.h"
+#include "nodes/own/own_sensor.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
@@ -49,11 +50,11 @@ dmise::FrameBytes mapped(const std::string& path) {
 /// somebody is there to ask, the same bytes in memory.
 void keep_frame(const dmise::FrameProducts& frame, const dmise::OutputConfig& output,
                 const std::string& directory, dmise::KeptFrames& kept) {
-  if (output.fits) {
+  if (output.fits && frame.counts.columns > 0) {
     kept.add(frame.report, [path = directory + "/" + dmise::frame_file_name(frame.report.frame)] {
       return mapped(path);
     });
-  } else if (kept.wanted()) {
+  } else if (kept.wanted() && frame.counts.columns > 0) {
     const auto bytes = std::make_shared<const std::string>(dmise::encode_frame(
         frame.counts, frame.header, output.saturation ? &frame.flags : nullptr));
     kept.add(
@@ -67,18 +68,14 @@ void keep_frame(const dmise::FrameProducts& frame, const dmise::OutputConfig& ou
   }
 }
 
-/// Finds sources by a program of the user's, if the sensor has one.
-dmise::SourceFinder finder_of(const dmise::Scenario& scenario, const std::string& sensor,
-                              const std::string& out, bool allowed) {
-  const auto& detector = dmise::sensor_named(scenario, sensor).detector;
-  if (!detector) return {};
+/// Makes room for the output of the program that the sensor starts, if it starts one.
+void prepare_program(const dmise::Scenario& scenario, const std::string& sensor,
+                     const std::string& out, bool allowed) {
+  const std::string node = dmise::sensor_named(scenario, sensor).started_node();
+  if (node.empty()) return;
   if (!allowed)
-    dmise::refuse_programs(
-        {*std::ranges::find(scenario.own_nodes, detector->node, &dmise::OwnNode::name)});
+    dmise::refuse_programs({*std::ranges::find(scenario.own_nodes, node, &dmise::OwnNode::name)});
   dmise::make_directories(out + "/logs");
-  return dmise::own_finder(scenario, sensor, out,
-                           {.note = [](const std::string& line) { spdlog::warn("{}", line); },
-                            .stop = &dmise::stop_signal()});
 }
 
 }  // namespace
@@ -99,7 +96,7 @@ int main(int argc, char** argv) {
   app.add_option("--digest", digest, "digest of the run, written into every frame");
   app.add_option("--plan", plan,
                  "run.json of a run: its frames' levels of effects instead of a plan");
-  app.add_flag("--allow-programs", allowed, "runs the detector that the scenario names");
+  app.add_flag("--allow-programs", allowed, "runs the program that the scenario names");
   app.add_option("--threads", threads, "number of threads")->check(CLI::Range(1, 256));
   return dmise::run_program(app, flags, argc, argv, [&] {
     dmise::Scenario scenario = dmise::load_scenario(config);
@@ -107,9 +104,14 @@ int main(int argc, char** argv) {
     if (!plan.empty()) dmise::replay_plans(plan, scenario);
     if (flags.name.empty()) throw dmise::ConfigError("--name: is required: the sensor's name");
     dmise::Threads pool(threads);
+    prepare_program(scenario, flags.name, out, allowed);
+    const dmise::OwnNodeSettings settings{
+        .note = [](const std::string& line) { spdlog::warn("{}", line); },
+        .stop = &dmise::stop_signal()};
     const auto sensor =
         dmise::make_sensor(scenario, flags.name, digest, out, dmise::load_stars(scenario), pool,
-                           finder_of(scenario, flags.name, out, allowed));
+                           dmise::own_finder(scenario, flags.name, out, settings),
+                           dmise::own_observer(scenario, flags.name, out, settings));
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });

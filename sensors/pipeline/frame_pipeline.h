@@ -11,6 +11,7 @@
 #include "core/products/frame_header.h"
 #include "core/products/frame_report.h"
 #include "core/products/truth.h"
+#include "core/sim/exposure_observer.h"
 #include "core/sky/star_cache.h"
 #include "core/time/clock.h"
 #include "sensors/pipeline/frame_planes.h"
@@ -60,35 +61,47 @@ struct PipelineSettings {
   /// Takes the light of each object alone; needs the noise among the planes of `output`.
   ObjectLightTaker object_light;
   SourceFinder finder = {};  // of a sensor with a detector of the user's
+  ExposureObserver observer =
+      {};  // of a sensor of the user's; empty: the command starts no programs
+};
+
+/// Makes the frames of one sensor.
+class FrameMaker {
+ public:
+  virtual ~FrameMaker() = default;
+
+  /// Makes one frame of an exposure as it is commanded (`frame_times`). `world` holds the states
+  /// from the exposure of `first_frame_for` it on. With `states` it holds ticks without states,
+  /// which `states` propagates.
+  virtual FrameProducts run(const FrameTimes& exposure, const World& world,
+                            StatesInField* states) = 0;
+  /// Takes back the counts of a finished frame, so that the next frame reuses their memory.
+  virtual void give_back(CountImage) {}
+  /// Returns the frame to expose first so that the detector is in the right state for `frame`:
+  /// `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
+  virtual std::uint32_t first_frame_for(std::uint32_t frame) const { return frame; }
+  /// Returns the most frames that a new pipeline must expose before its first one.
+  virtual std::uint32_t most_frames_made_again() const { return 0; }
+  /// Describes the OpenGL that draws points and sky; empty when they are deposited.
+  virtual std::string evaluator() const { return ""; }
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane
 /// -> expected electrons -> electrons -> counts -> detections. Keeps its buffers between frames.
-class FramePipeline {
+class FramePipeline : public FrameMaker {
  public:
   /// `stars` may be null: no stars. `threads` must outlive the pipeline.
   FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars, Threads& threads);
-  ~FramePipeline();
+  ~FramePipeline() override;
 
-  /// Makes one frame of an exposure as it is commanded (`frame_times`). `world` holds the states
-  /// from the exposure of `first_frame_for` it on: with persistence a frame depends on the ones
-  /// before it, which are made first where they were not. With `states` it holds ticks without
-  /// states, which `states` propagates.
+  /// With persistence a frame depends on the ones before it, which are made first where they were
+  /// not.
   FrameProducts run(const FrameTimes& exposure, const World& world,
-                    StatesInField* states = nullptr);
-
-  /// Takes back the counts of a finished frame, so that the next frame reuses their memory.
-  void give_back(CountImage counts);
-
-  /// Returns the frame to expose first so that the detector is in the right state for `frame`:
-  /// `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
-  std::uint32_t first_frame_for(std::uint32_t frame) const;
-
-  /// Describes the OpenGL that draws points and sky; empty when they are deposited.
-  std::string evaluator() const;
-
-  /// Returns the most frames that a new pipeline must expose before its first one.
-  std::uint32_t most_frames_made_again() const;
+                    StatesInField* states = nullptr) override;
+  void give_back(CountImage counts) override;
+  std::uint32_t first_frame_for(std::uint32_t frame) const override;
+  std::string evaluator() const override;
+  std::uint32_t most_frames_made_again() const override;
 
  private:
   struct Work;

@@ -8,6 +8,14 @@
 #include "core/photometry/band_parts.h"
 
 namespace dmise {
+namespace {
+
+/// The files of a sensor without images.
+OutputConfig without_images(const OutputConfig& output) {
+  return {.fits = false, .png = false, .truth = output.truth};
+}
+
+}  // namespace
 
 std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
   if (scenario.star_catalogue_path.empty()) return nullptr;
@@ -28,6 +36,13 @@ std::shared_ptr<const std::vector<OwnObject>> propagated_by_sensors(const Scenar
 PipelineSettings sensor_settings(const Scenario& scenario, const std::string& name,
                                  const std::string& digest) {
   const SensorConfig& sensor = sensor_named(scenario, name);
+  if (!sensor.is_camera())
+    return {.sensor = sensor,
+            .clock = make_clock(scenario),
+            .seed = scenario.seed,
+            .digest = digest,
+            .shapes = nullptr,
+            .propagated = nullptr};
   const auto shapes_in = [&](const Band& band) {
     return std::make_shared<const ObjectShapes>(scenario.own_objects, band, sensor.effects,
                                                 models_of(scenario.objects));
@@ -61,12 +76,14 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                                              const std::string& digest,
                                              const std::string& directory,
                                              std::shared_ptr<const StarMap> stars, Threads& threads,
-                                             SourceFinder finder) {
+                                             SourceFinder finder, ExposureObserver observer) {
   PipelineSettings settings = sensor_settings(scenario, name, digest);
   settings.finder = std::move(finder);
+  settings.observer = std::move(observer);
+  const bool has_image = settings.sensor.is_camera();
   return std::make_unique<SensorEvaluator>(
-      settings, run_grid(scenario), scenario.output, std::move(stars),
-      directory.empty() ? "" : directory + "/" + name, threads);
+      settings, run_grid(scenario), has_image ? scenario.output : without_images(scenario.output),
+      std::move(stars), directory.empty() ? "" : directory + "/" + name, threads);
 }
 
 }  // namespace dmise

@@ -20,11 +20,12 @@ RunGrid run_grid(const Scenario& scenario);
 
 /// The sensor `name` of the scenario. `digest` goes into its frames; `directory` is the run's, the
 /// sensor writes into its own below it; empty: it writes nothing. `finder` is the sensor's
-/// detector, if that is a program of the user's.
+/// detector, `observer` the sensor, if that is a program of the user's.
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
                                              const std::string& digest,
                                              const std::string& directory,
                                              std::shared_ptr<const StarMap> stars, Threads& threads,
-                                             SourceFinder finder = {});
+                                             SourceFinder finder = {},
+                                             ExposureObserver observer = {});
 
 }  // namespace dmise

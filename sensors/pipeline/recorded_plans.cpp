@@ -40,6 +40,7 @@ void replay_plans(const std::string& run_json, Scenario& scenario) {
   try {
     if (!run.is_object() || !run.at("frames").is_array()) throw ConfigError("it has no frames");
     for (auto& sensor : scenario.sensors) {
+      if (!sensor.is_camera()) continue;
       sensor.recorded_plans = plans_of(run.at("frames"), sensor.name);
       if (sensor.recorded_plans.empty())
         throw ConfigError("no planned frames of sensor " + sensor.name);

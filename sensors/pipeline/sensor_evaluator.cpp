@@ -8,8 +8,18 @@
 #include "core/sky/air_effects.h"
 #include "core/sky/place_effects.h"
 #include "sensors/pipeline/cue_path.h"
+#include "sensors/pipeline/observed_frames.h"
 
 namespace dmise {
+namespace {
+
+std::unique_ptr<FrameMaker> frame_maker(const PipelineSettings& settings,
+                                        std::shared_ptr<const StarMap> stars, Threads& threads) {
+  if (!settings.sensor.is_camera()) return std::make_unique<ObservedFrames>(settings);
+  return std::make_unique<FramePipeline>(settings, std::move(stars), threads);
+}
+
+}  // namespace
 
 SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid,
                                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
@@ -26,7 +36,7 @@ SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid
       grid_(grid),
       last_frame_(frames_within(settings.sensor, grid.duration)),
       shapes_(settings.shapes),
-      pipeline_(settings, std::move(stars), threads),
+      frames_(frame_maker(settings, std::move(stars), threads)),
       world_(grid.interpolation, grid.last_tick()),
       propagated_(settings.propagated),
       clock_(settings.clock) {}
@@ -42,6 +52,9 @@ std::vector<std::string> SensorEvaluator::produces() const {
 }
 
 std::vector<std::string> SensorEvaluator::consumes() const {
+  if (!sensor_.is_camera())
+    return takes_states(sensor_) ? std::vector<std::string>{objects_topic, environment_topic}
+                                 : std::vector<std::string>{environment_topic};
   const EffectSet& effects = sensor_.effects;
   const bool on_ground = std::holds_alternative<SiteConfig>(sensor_.place);
   std::vector<std::string> topics;
@@ -100,7 +113,7 @@ Tick SensorEvaluator::look_back() const {
     const ExposureSpan span = exposure_span(sensor_, frame);
     exposure = std::max(exposure, span.end - span.start);
   }
-  const auto frames = std::min(pipeline_.most_frames_made_again(), last_frame_);
+  const auto frames = std::min(frames_->most_frames_made_again(), last_frame_);
   const SimTime earlier{frames * sim_seconds(sensor_.cadence_s).ns};
   const std::int64_t ns = exposure.ns + earlier.ns + grid_.environment_every.ns;
   const Tick beyond = knots(grid_.interpolation) - 2;  // on either side of the exposure
@@ -130,7 +143,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
     if (ready_at(next_frame_) > tick) {
-      world_.forget_before(exposure_span(sensor_, pipeline_.first_frame_for(next_frame_)).start);
+      world_.forget_before(exposure_span(sensor_, frames_->first_frame_for(next_frame_)).start);
       if (states_) states_->forget_before(world_.first_tick());
       break;
     }
@@ -142,11 +155,11 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
       }
       world_.follow(*std::ranges::find(tasks_, task, &std::shared_ptr<const Task>::get));
     }
-    FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);
+    FrameProducts frame = frames_->run(exposure, world_, states_ ? &*states_ : nullptr);
     if (frame.stopped) break;
     if (writer_) writer_->write(frame);
     made_(frame);
-    pipeline_.give_back(std::move(frame.counts));
+    frames_->give_back(std::move(frame.counts));
     detections_ += static_cast<long>(frame.detections.size());
     messages.push_back(
         {frame_prefix + sensor_.name, tick, std::make_shared<State>(std::move(frame.report))});

@@ -56,7 +56,7 @@ class SensorEvaluator : public Evaluator {
   int frames_done() const { return static_cast<int>(next_frame_) - 1; }
   long detections_made() const { return detections_; }
   /// Describes the OpenGL that draws points and sky; empty when they are deposited.
-  std::string evaluator() const { return pipeline_.evaluator(); }
+  std::string evaluator() const { return frames_->evaluator(); }
   /// Describes what draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near
   /// enough.
   std::string renderer() const { return shapes_ ? shapes_->renderer_description() : ""; }
@@ -74,7 +74,7 @@ class SensorEvaluator : public Evaluator {
   RunGrid grid_;
   std::uint32_t last_frame_;
   std::shared_ptr<const ObjectShapes> shapes_;
-  FramePipeline pipeline_;
+  std::unique_ptr<FrameMaker> frames_;
   std::optional<ProductWriter> writer_;
   World world_;
   std::shared_ptr<const std::vector<OwnObject>> propagated_;  // null: takes published states

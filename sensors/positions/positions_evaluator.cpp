@@ -92,13 +92,14 @@ std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick ti
   if (mount.platform)
     if (const auto attitude = states_->attitude(*mount.platform))
       scene.gcrs_from_body = rotation_of<Gcrs, Body>(attitude->gcrs_from_body);
-  return PositionRow{.tick = tick,
-                     .time_utc = utc(tick),
-                     .kind = "camera",
-                     .name = sensor.name,
-                     .position_m = scene.observer.position_m,
-                     .slope_m_per_s = scene.observer.velocity_m_per_s,
-                     .gcrs_from_axes = upright(quaternion_of(aim(sensor, scene).inverse()))};
+  PositionRow row{.tick = tick,
+                  .time_utc = utc(tick),
+                  .kind = sensor.is_camera() ? "camera" : "sensor",
+                  .name = sensor.name,
+                  .position_m = scene.observer.position_m,
+                  .slope_m_per_s = scene.observer.velocity_m_per_s};
+  if (sensor.is_camera()) row.gcrs_from_axes = upright(quaternion_of(aim(sensor, scene).inverse()));
+  return row;
 }
 
 std::vector<PositionRow> PositionsEvaluator::rows(Tick tick) const {

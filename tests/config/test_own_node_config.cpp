@@ -255,5 +255,80 @@ TEST_F(TrackingNode, DoesNothingElseAndTakesNoKeysOfOurFilters) {
               HasSubstr("did you mean cue_delay_ticks"));
 }
 
+class ObservingNode : public NodesOfObjects {
+ protected:
+  static Scenario observe(const std::string& sensor, const std::string& node = "run: [sh]",
+                          const std::string& motion = "fixed: {gcrs_m: [7e6, 0, 0]}") {
+    return load("  - {name: a, motion: {" + motion + "}}\n", "[{name: ranger, " + node + "}]",
+                "}\n  - {name: radar, node: " + sensor);
+  }
+  static std::string complaint(const std::string& sensor, const std::string& node = "run: [sh]",
+                               const std::string& motion = "fixed: {gcrs_m: [7e6, 0, 0]}") {
+    return config_error_of([&] { observe(sensor, node, motion); });
+  }
+  static constexpr const char* times = ", exposure_s: 1, cadence_s: 5";
+};
+
+TEST_F(ObservingNode, IsASensorInTheProcessOfTheSensor) {
+  const std::string site = "ranger, site: {latitude_deg: 30, longitude_deg: 10}";
+  const Scenario scenario = observe(site + ", exposure_s: 1, cadence_s: 5, first_exposure_s: 2");
+  const SensorConfig& radar = scenario.sensors.at(1);
+  EXPECT_TRUE(scenario.sensors[0].is_camera());
+  EXPECT_FALSE(radar.is_camera());
+  EXPECT_EQ(radar.name, "radar");
+  EXPECT_EQ(radar.started_node(), "ranger");
+  EXPECT_EQ(site_of(radar)->latitude_deg, 30);
+  EXPECT_EQ(radar.first_exposure_s, 2);
+  EXPECT_FALSE(radar.observing->truth);
+  EXPECT_EQ(radar.observing->half_angle_deg, 180);
+  EXPECT_TRUE(radar.detect);
+  EXPECT_EQ(scenario.own_nodes[0].role, OwnNodeRole::sensor);
+  EXPECT_FALSE(kind_of_node("ranger", scenario));
+  EXPECT_TRUE(starts_program(*kind_of_node("radar", scenario), "radar", scenario));
+  EXPECT_THAT(nodes_of(scenario), testing::Contains("radar"));
+}
+
+// The orbit node publishes states for those who need them.
+TEST_F(ObservingNode, NeedsStatesForItsTruthAndItsPlatform) {
+  const std::string site =
+      "ranger, site: {latitude_deg: 30, longitude_deg: 10}" + std::string(times);
+  EXPECT_FALSE(observe(site).nodes_take_states());
+  EXPECT_TRUE(observe(site + ", truth: on").nodes_take_states());
+  EXPECT_TRUE(observe("ranger, platform: a" + std::string(times)).nodes_take_states());
+  EXPECT_NE(physics_json(observe(site)), physics_json(observe(site + ", truth: on")));
+  EXPECT_NE(physics_json(observe(site)), physics_json(observe(site + ", half_angle_deg: 3")));
+}
+
+TEST_F(ObservingNode, WhatIsWrongIsToldWithItsPlace) {
+  const std::string at = ", platform: a" + std::string(times);
+  EXPECT_THAT(complaint("rangr" + at),
+              testing::AllOf(HasSubstr("sensors[1].node: no node of"),
+                             HasSubstr("did you mean ranger?, got rangr")));
+  EXPECT_THAT(complaint("ranger" + at, "run: [sh]", "node: ranger"),
+              HasSubstr("nodes[0]: moves or turns objects and observes: give each a node"));
+  EXPECT_THAT(complaint("ranger" + at, "elsewhere: on"),
+              HasSubstr("sensors[1].node: its node is elsewhere, but a sensor starts its program"));
+  EXPECT_THAT(complaint("ranger" + at, "run: [sh], period_ticks: 2"),
+              HasSubstr("nodes[0].period_ticks: a sensor is asked at each exposure: must be 1"));
+  EXPECT_THAT(complaint("ranger" + std::string(times)), HasSubstr("needs either site"));
+  EXPECT_THAT(complaint("ranger" + at + ", camera: raven"),
+              HasSubstr("sensors[1].camera: unknown"));
+  EXPECT_THAT(complaint("ranger" + at + ", half_angle_deg: 0"),
+              HasSubstr("half_angle_deg: must be"));
+  EXPECT_THAT(complaint("ranger, platform: a, exposure_s: 9, cadence_s: 5"),
+              HasSubstr("sensors[1].exposure_s: must be <= cadence_s, got 9"));
+  EXPECT_THAT(complaint("ranger" + at + ", first_exposure_s: 30"),
+              HasSubstr("the first exposure ends after the run does"));
+}
+
+TEST_F(ObservingNode, WhatNeedsACameraSaysSo) {
+  Scenario scenario = observe("ranger, platform: a" + std::string(times));
+  keep_cameras(scenario, "dmise survey");
+  EXPECT_EQ(scenario.sensors.size(), 1u);
+  scenario.sensors[0].observing.emplace();
+  EXPECT_THAT(config_error_of([&] { keep_cameras(scenario, "dmise survey"); }),
+              HasSubstr("sensors[0]: dmise survey needs a camera"));
+}
+
 }  // namespace
 }  // namespace dmise

@@ -89,5 +89,17 @@ TEST(LiveTrack, IsPublishedAtTheTickWithTheFiltersCovariance) {
   EXPECT_EQ(told.covariance[20], expected->covariance(5, 5));
 }
 
+TEST(LiveTrack, DetectionsWithoutAMagnitudeLeaveItsMean) {
+  MeanBrightness brightness;
+  EXPECT_FALSE(brightness.is_known());
+  brightness.add(no_magnitude, 5e5);
+  EXPECT_FALSE(brightness.is_known());
+  brightness.add(6.0, 1e6);
+  brightness.add(no_magnitude, 5e5);
+  brightness.add(8.0, 1e6);
+  EXPECT_NEAR(brightness.magnitude(1e6), 7.0, 1e-12);
+  EXPECT_NEAR(brightness.magnitude(1e7), 12.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace dmise

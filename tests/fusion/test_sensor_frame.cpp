@@ -101,5 +101,25 @@ TEST(SensorFrame, LeavesOutDetectionsThatAreNotUsable) {
   EXPECT_TRUE(frame.sources[0].star_like);
 }
 
+// A sensor of the user's: what it does not see says something only if it states how deep it sees.
+TEST(SensorFrame, WithoutAnImageHasAConeAlone) {
+  FrameReport report = towards_aries();
+  Detection d;
+  d.covariance_rad2 = {1e-10, 0, 1e-10};
+  d.sensor_position_m = report.sensor_position_m;
+  d.magnitude = no_magnitude;
+  d.range_m = 7e5, d.range_sigma_m = 2;
+  const SensorFrame frame = sensor_frame(report, {d}, 0, 0, 30 * deg);
+  EXPECT_FALSE(frame.wcs);
+  EXPECT_FALSE(frame.needs_sunlight);
+  EXPECT_TRUE(frame.searched);
+  EXPECT_TRUE(frame.shows(from_spherical<Gcrs>(29 * deg, 0.0)));
+  EXPECT_FALSE(frame.shows(from_spherical<Gcrs>(31 * deg, 0.0)));
+  EXPECT_EQ(frame.sources.at(0).magnitude, no_magnitude);
+  EXPECT_EQ(frame.sources[0].observation.range_m->value, 7e5);
+  report.limiting_magnitude = 0;
+  EXPECT_FALSE(sensor_frame(report, {d}, 0, 0, 30 * deg).searched);
+}
+
 }  // namespace
 }  // namespace dmise

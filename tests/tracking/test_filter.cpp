@@ -71,6 +71,86 @@ TEST(Filter, AgreesWithLeastSquares) {
   }
 }
 
+/// Distance from a sensor to where the light left the object that arrives at `time_s` after `time`.
+double range_m(const ForceModel& forces, const OrbitState& truth, SimTime time, double after_s,
+               const Vec<Gcrs>& sensor_m) {
+  const auto now = propagate(forces, truth, time, {.position_tolerance_m = 1e-7});
+  if (!now) throw Error(std::string(now.reason));
+  double light_s = 0;
+  Vec<Gcrs> line;
+  for (int i = 0; i < 6; ++i) {
+    const Vec<Gcrs>& r = now->position_m;
+    const Vec<Gcrs> pull = r * (-earth_gm_m3_per_s2 / std::pow(norm(r), 3));
+    const double dt_s = after_s - light_s;
+    line = r + now->velocity_m_per_s * dt_s + pull * (dt_s * dt_s / 2) - sensor_m;
+    light_s = norm(line) / speed_of_light_m_per_s;
+  }
+  return norm(line);
+}
+
+/// Adds ranges and their rates, by differences over 0.2 s, with errors of a seed.
+void add_ranges(const ForceModel& forces, TrackingTrial& trial, double sigma_m,
+                double sigma_m_per_s, unsigned seed) {
+  const RngKey key = rng_key(seed, "filter", 0, "ranges");
+  std::uint32_t draw = 0;
+  for (AngleObservation& seen : trial.observations) {
+    seen.sensor_m_per_s = cross(Vec<Gcrs>{0, 0, 7.292115146706979e-5}, seen.sensor_m);
+    const auto at = [&](double s) {
+      return range_m(forces, trial.truth, seen.time, s, seen.sensor_m + seen.sensor_m_per_s * s);
+    };
+    const double rate = (at(0.1) - at(-0.1)) / 0.2;
+    seen.range_m = {at(0) + sigma_m * normal_of(rng_word(key, draw++, 0)), sigma_m};
+    seen.range_rate_m_per_s = {rate + sigma_m_per_s * normal_of(rng_word(key, draw++, 0)),
+                               sigma_m_per_s};
+  }
+}
+
+// Errors over their covariance: the mean of 60 x 6 squares is 1 +- 0.075.
+TEST(Filter, TakesRangesAndTheirRates) {
+  const ForceModel forces(ForceSettings{});
+  double sum_nees = 0, with_m2 = 0, without_m2 = 0;
+  const int seeds = 60;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    TrackingTrial trial = tracking_trial(forces, {}, seed);
+    OrbitFilter angles = started(forces, trial, without_noise());
+    for (const AngleObservation& seen : std::span(trial.observations).subspan(6))
+      ASSERT_TRUE(angles.update(seen));
+    without_m2 += angles.estimate().covariance.topLeftCorner<3, 3>().trace();
+    add_ranges(forces, trial, 2.0, 0.05, seed);
+    OrbitFilter filter = started(forces, trial, without_noise());
+    for (const AngleObservation& seen : std::span(trial.observations).subspan(6)) {
+      const auto found = filter.update(seen);
+      ASSERT_TRUE(found) << found.reason << " " << seed;
+    }
+    const OrbitEstimate end = filter.estimate();
+    const auto truth = propagate(forces, trial.truth, end.state.time);
+    sum_nees += nees(end, *truth) / 6;
+    with_m2 += end.covariance.topLeftCorner<3, 3>().trace();
+  }
+  EXPECT_NEAR(sum_nees / seeds, 1, 0.25);
+  EXPECT_LT(with_m2, 0.05 * without_m2);
+}
+
+TEST(Filter, RefusesARangeOfAnotherObjectAndStaysAsItWas) {
+  const ForceModel forces(ForceSettings{});
+  TrackingTrial trial = tracking_trial(forces, {}, 5);
+  add_ranges(forces, trial, 2.0, 0.05, 5);
+  OrbitFilter filter = started(forces, trial, {});
+  ASSERT_TRUE(filter.update(trial.observations[6]));
+  const OrbitEstimate before = filter.estimate();
+  AngleObservation wrong = trial.observations[7];
+  wrong.range_m->value += 50e3;
+  EXPECT_FALSE(filter.update(wrong));
+  wrong = trial.observations[7];
+  wrong.range_rate_m_per_s->value += 500;
+  EXPECT_FALSE(filter.update(wrong));
+  wrong = trial.observations[7];
+  wrong.range_m->sigma = 0;
+  EXPECT_FALSE(filter.update(wrong));
+  EXPECT_EQ(filter.estimate().state, before.state);
+  EXPECT_TRUE(filter.update(trial.observations[7]));
+}
+
 TEST(Filter, OrderOfArrivalDoesNotMatter) {
   const ForceModel forces(ForceSettings{});
   const TrackingTrial trial = tracking_trial(forces, {}, 11);

@@ -202,6 +202,9 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.saturated = d.at_edge = index % 2;
   d.star_like = index % 3;
   d.excluded = index % 2 == 0;
+  if (index % 2) return d;
+  d.range_m = n.in(1e5, 1e7), d.range_sigma_m = n.in(1, 100);
+  d.range_rate_m_per_s = n.in(-8e3, 8e3), d.range_rate_sigma_m_per_s = n.in(0.1, 10);
   return d;
 }
 

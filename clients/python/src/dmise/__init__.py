@@ -5,8 +5,8 @@
 
 `Simulation` makes frames as arrays; `detect` and `solve` read frames of any camera, `propagate` moves a catalogue; `check`, `score`,
 `survey`, `tradeoff` and `visible` are commands. `subscribe` observes a run, `aio.subscribe` does so in asyncio, `Node` takes part in its
-clock, `actor` and `serve` move objects in it, `detector` finds sources in its frames, `tracker` makes the tracks, `open_run` reads
-the directory of a run that is over, `datasets` labelled frames for training; `record` writes all that is on the wire into a file,
+clock, `actor` and `serve` move objects in it, `detector` finds sources in its frames, `sensor` observes, `tracker` makes the
+tracks, `open_run` reads the directory of a run that is over, `datasets` labelled frames for training; `record` writes all that is on the wire into a file,
 `open_recording` reads it and `Replay` plays it to observers.
 Units are in the names of fields; directions are ICRS, positions GCRS.
 """

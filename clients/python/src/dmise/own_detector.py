@@ -113,42 +113,41 @@ def packed(said: Any) -> Any:
     for one in each:
         if not isinstance(one, Found):
             raise TypeError(f"a detector returns dmise.Found, or a list of them, got one {type(one).__name__}")
-        for source in _one_by_one(one):
+        for source in one_by_one(one, len(one.x_px) if np.ndim(one.x_px) else None):
             _add(found, source)
     return found
 
 
-def _one_by_one(found: Found) -> Iterable[Found]:
-    """The sources of one whose numbers are arrays, if they are."""
-    if np.ndim(found.x_px) == 0:
-        return [found]
-    count = len(found.x_px)
+def one_by_one(together: Any, count: int | None) -> Iterable[Any]:
+    """The `count` of which a dataclass has arrays, one by one; without a count it is one."""
+    if count is None:
+        return [together]
     columns: dict[str, Sequence[Any]] = {}
-    for each in fields(Found):
-        value = getattr(found, each.name)
+    for each in fields(together):
+        value = getattr(together, each.name)
         if value is None or np.ndim(value) == 0:
             columns[each.name] = [value] * count
             continue
         array = np.asarray(value, np.float64)
         if array.shape[-1] != count:
-            raise ValueError(f"{each.name}: must have {count} columns, as x_px has, got the shape {array.shape}")
+            raise ValueError(f"{each.name}: must have {count} columns, got the shape {array.shape}")
         columns[each.name] = list(array.T)
-    return [Found(**{name: column[i] for name, column in columns.items()}) for i in range(count)]
+    return [type(together)(**{name: column[i] for name, column in columns.items()}) for i in range(count)]
 
 
 def _add(found: Any, source: Found) -> None:
-    added = found.sources.add(flux_e=_number(source, "flux_e"), snr=_number(source, "snr"))
+    added = found.sources.add(flux_e=number_of(source, "flux_e"), snr=number_of(source, "snr"))
     covariance = _covariance(source, "covariance_px2", "sigma_px")
     if covariance is None:
         raise ValueError("sigma_px or covariance_px2: is needed")
-    _set(added.centroid, [_number(source, "x_px"), _number(source, "y_px")], covariance)
+    _set(added.centroid, [number_of(source, "x_px"), number_of(source, "y_px")], covariance)
     if (source.end1_px is None) != (source.end2_px is None):
         raise ValueError("end1_px and end2_px: a streak has both")
     for name, end in (("end1", added.end1), ("end2", added.end2)):
         if getattr(source, f"{name}_px") is None:
             continue
         of_end = _covariance(source, f"{name}_covariance_px2", "end_sigma_px")
-        _set(end, _numbers(source, f"{name}_px", 2), covariance if of_end is None else of_end)
+        _set(end, numbers_in(source, f"{name}_px", 2), covariance if of_end is None else of_end)
 
 
 def _set(place: Any, at: list[float], covariance_px2: list[float]) -> None:
@@ -158,21 +157,21 @@ def _set(place: Any, at: list[float], covariance_px2: list[float]) -> None:
 
 def _covariance(source: Found, name: str, sigma_name: str) -> list[float] | None:
     if getattr(source, name) is not None:
-        return _numbers(source, name, 3)
+        return numbers_in(source, name, 3)
     if getattr(source, sigma_name) is None:
         return None
-    variance = _number(source, sigma_name)**2
+    variance = number_of(source, sigma_name)**2
     return [variance, 0.0, variance]
 
 
-def _number(source: Found, name: str) -> float:
+def number_of(source: Any, name: str) -> float:
     try:
         return float(getattr(source, name))
     except (TypeError, ValueError):
         raise ValueError(f"{name}: must be a number, got {getattr(source, name)!r}") from None
 
 
-def _numbers(source: Found, name: str, count: int) -> list[float]:
+def numbers_in(source: Any, name: str, count: int) -> list[float]:
     numbers = np.asarray(getattr(source, name), np.float64)
     if numbers.shape != (count,):
         raise ValueError(f"{name}: must have the shape {(count,)}, got {numbers.shape}")

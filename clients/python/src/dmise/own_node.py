@@ -1,4 +1,4 @@
-"""Models of one's own in a run: `actor` marks what moves objects, `serve` runs it, a detector or a tracker
+"""Models of one's own in a run: `actor` marks what moves objects, `serve` runs it, a detector, a sensor or a tracker
 (docs/howto/plug-in-a-model.md).
 
     @dmise.actor("inspector")
@@ -24,14 +24,15 @@ from typing import Any
 
 import zmq
 
-from . import own_detector, own_tracker, protocol
+from . import own_detector, own_sensor, own_tracker, protocol
 from .convert import record_of, start_of
 from .message import records_in
 from .own_detector import Detector, Served
+from .own_sensor import Observer
 from .own_states import StatesWriter
 from .own_tracker import Known, Tracker
 from .topics import is_wanted
-from .world import EnvironmentState
+from .world import EnvironmentState, ObjectRoster, ObjectStates
 
 ADDRESS_VARIABLE = "DMISE_OWN_NODE"
 LONGEST_REQUEST_BYTES = 1 << 30  # frames of 500 Mpx
@@ -51,6 +52,7 @@ class World:
     seed: int = 0  # of the scenario
     known: Known = field(default_factory=Known)  # to a tracker
     messages: Any = field(default=(), repr=False)  # that came since the last tick, OwnNodeHeard each
+    truth: ObjectStates | None = field(default=None, repr=False)  # of all objects at mid exposure, to a sensor with `truth: on`
 
     @functools.cached_property
     def topics(self) -> dict[str, list[Any]]:
@@ -92,10 +94,10 @@ def actor(*names: str) -> Callable[[Callable[..., Any]], Actor]:
     return lambda model: Actor(model, names)
 
 
-def serve(model: Actor | Detector | Tracker) -> None:
+def serve(model: Actor | Detector | Observer | Tracker) -> None:
     """Says what `model` says, tick by tick or frame by frame, to the run that has started this program, until the run ends."""
     if not isinstance(model, Served):
-        raise TypeError(f"serve: takes what @dmise.actor(..), @dmise.detector or @dmise.tracker marks, got "
+        raise TypeError(f"serve: takes what @dmise.actor(..), @dmise.detector, @dmise.sensor or @dmise.tracker marks, got "
                         f"{type(model).__name__}")
     address = os.environ.get(ADDRESS_VARIABLE)
     if not address:
@@ -112,7 +114,7 @@ class _Failed(Exception):
 
 
 class _Conversation:
-    def __init__(self, address: str, served: Actor | Detector | Tracker) -> None:
+    def __init__(self, address: str, served: Actor | Detector | Observer | Tracker) -> None:
         self._served = served
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.PAIR)
@@ -160,6 +162,8 @@ class _Conversation:
                 frames = self._begin(request.begin, more)
             elif body == "frame":
                 frames = self._search(request.frame, more[0])
+            elif body == "observe":
+                frames = self._observe(request.observe, more)
             elif body == "track":
                 frames = self._track(request.track, more)
             else:
@@ -206,6 +210,7 @@ class _Conversation:
         self._states = StatesWriter(begin.objects)
         self._options = json.loads(begin.options_json)
         self._known = own_tracker.known_of(begin.tracking, more, self._start) if begin.HasField("tracking") else Known()
+        self._roster = own_sensor.roster_of(more, self._start) if begin.HasField("observing") else ObjectRoster()
         self._require_role()
         self._model = self._served.make()
         if begin.HasField("checkpoint"):
@@ -215,9 +220,11 @@ class _Conversation:
     def _require_role(self) -> None:
         """What the program does is what the scenario has it do."""
         served, begun = self._served, self._begun
-        does = "detects" if isinstance(served, Detector) else "tracks" if isinstance(served, Tracker) else "moves objects"
+        roles = ((Detector, "detects"), (Tracker, "tracks"), (Observer, "observes"), (Actor, "moves objects"))
+        does = next(role for kind, role in roles if isinstance(served, kind))
         wanted = f"detect in the frames of {begun.sensor}" if begun.HasField("sensor") else \
-            "track" if begun.HasField("tracking") else f"move {', '.join(self._objects)}"
+            "track" if begun.HasField("tracking") else \
+            f"observe as {begun.observing.sensor.name}" if begun.HasField("observing") else f"move {', '.join(self._objects)}"
         if does.split()[0].rstrip("s") != wanted.split()[0]:
             raise ValueError(f"the program {does}, the scenario has it {wanted}")
         if isinstance(served, Actor) and served.names and sorted(served.names) != sorted(self._objects):
@@ -244,6 +251,13 @@ class _Conversation:
         stepped = protocol.OwnNodeStepped()
         self._checkpoint(step, stepped)
         return [protocol.OwnNodeAnswer(stepped=stepped).SerializeToString(), *self._states.frames(said, step.tick, step.time_ns)]
+
+    def _observe(self, asked: Any, more: list[bytes]) -> list[bytes]:
+        exposure = own_sensor.exposure_of(asked)
+        world = World(asked.tick, asked.middle_ns, more[0], self._start, self._begun.node, seed=self._begun.seed,
+                      truth=own_sensor.truth_of(more[1:], self._roster, self._start))
+        said = self._said_by(exposure, world, self._options)
+        return [protocol.OwnNodeAnswer(observed=own_sensor.packed(said, exposure)).SerializeToString()]
 
     def _track(self, track: Any, more: list[bytes]) -> list[bytes]:
         frames = own_tracker.frames_of(more[1:], self._start)

@@ -95,6 +95,10 @@ class Detection(Record):
     position_angle_rad: float = 0.0
     magnitude_system: MagnitudeSystem = "v_solar"
     excluded: bool = False  # Sun, Moon or limb was nearer to the axis than the camera allows
+    range_m: float | None = None  # of a sensor that measures it
+    range_sigma_m: float | None = None
+    range_rate_m_per_s: float | None = None
+    range_rate_sigma_m_per_s: float | None = None
 
     @property
     def time_utc(self) -> datetime.datetime:

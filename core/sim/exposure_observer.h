@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "core/products/own_sighting.h"
+#include "core/sim/state.h"
+
+namespace dmise {
+
+/// What a sensor of the user's is told of an exposure. All states are those of mid exposure.
+struct ObserverExposure {
+  std::uint32_t frame = 0;  // from 1
+  SimTime start, middle, end;
+  Vec<Gcrs> position_m, velocity_m_per_s;  // of the sensor
+  EnvironmentState environment;
+  const ObjectRoster* roster = nullptr;  // of the objects; null: it is not told the truth
+  ObjectStates objects = {};             // of the roster's
+};
+
+/// Observes in place of a camera; nothing: the run is being stopped.
+using ExposureObserver = std::function<std::optional<Observed>(const ObserverExposure&)>;
+
+}  // namespace dmise
