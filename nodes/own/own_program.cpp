@@ -248,7 +248,7 @@ std::optional<v1::OwnNodeObserved> OwnProgram::observe(const v1::OwnNodeObserve&
   v1::OwnNodeRequest request;
   *request.mutable_observe() = exposure;
   if (!send(request, settings_.silent_after_s, more)) return std::nullopt;
-  auto got = heard("exposure", v1::OwnNodeAnswer::kObserved, 1);
+  auto got = heard("frame", v1::OwnNodeAnswer::kObserved, 1);
   if (!got) return std::nullopt;
   return std::move(*got->head.mutable_observed());
 }
