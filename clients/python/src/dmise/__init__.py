@@ -15,7 +15,8 @@ try:
     import numpy  # noqa: F401
     import zmq  # noqa: F401
 except ImportError as missing:
-    raise ImportError(f"{missing.name}: not installed; dmise needs pyzmq, protobuf and numpy: "
+    import sys
+    raise ImportError(f"{missing.name}: not installed for {sys.executable}; dmise needs pyzmq, protobuf and numpy: "
                       "apt install python3-zmq python3-protobuf python3-numpy, or pip install pyzmq protobuf numpy",
                       name=missing.name) from None
 
