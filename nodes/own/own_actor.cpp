@@ -217,8 +217,11 @@ void OwnActor::check(const ObjectStates& states) const {
                 ", the objects that it turns, got " + list_text(states.attitude_object));
 }
 
-/// Warns of objects that are under the ground, which are not in the scene.
+/// Warns of objects that are not in the scene: that are under the ground, or all of them at tick 0.
 void OwnActor::look_at_places(const ObjectStates& states, const EarthOrientation& earth) {
+  if (states.tick == 0 && std::ranges::count(states.code, 0) == 0)
+    settings_.note(node_.name +
+                   ": no object has a state at tick 0: does the model return what it computes?");
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (underground_[i] || states.code[i] != 0 || !is_moved_by(node_, *objects_[i])) continue;
     if (is_above_ground(states.position(i), earth, scenario_.earth.ellipsoid)) continue;
@@ -226,7 +229,8 @@ void OwnActor::look_at_places(const ObjectStates& states, const EarthOrientation
     settings_.note(
         node_.name + ": " + objects_[i]->name +
         formatted(
-            " is not in the scene at tick %ld: %.6g m from the Earth's centre is under the ground",
+            " is not in the scene at tick %ld: %.6g m from the Earth's centre is under the ground; "
+            "are its positions in m?",
             long(states.tick), norm(states.position(i))));
   }
 }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "nodes/wire/refusal.h"
 
@@ -17,8 +18,7 @@ void finite(double value, const char* field) {
 
 void in_range(double value, double low, double high, const char* field) {
   if (!(value >= low && value <= high))
-    refuse(field, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], got " +
-                      std::to_string(value));
+    refuse(field, formatted("must be in [%.9g, %.9g], got %.9g", low, high, value));
 }
 
 void not_negative(double value, const char* field) {

@@ -25,6 +25,10 @@ def orbit(t_s, world, options):
         speed[0] = 3e8
     if fault == "nothing":
         return dmise.State()
+    if fault == "no_return":
+        return None
+    if fault == "kilometres":
+        place = [x / 1000 for x in place]
     if fault == "another_object":
         return {"ghost": dmise.State(place, speed)}
     if fault == "killed":

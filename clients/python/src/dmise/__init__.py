@@ -13,6 +13,7 @@ Units are in the names of fields; directions are ICRS, positions GCRS.
 import importlib
 import os
 import re
+import sys
 from typing import Any
 
 __version__ = "1.0.0"
@@ -39,7 +40,7 @@ def __getattr__(name: str) -> Any:
     except ImportError as missing:
         if missing.name not in _NEEDED:
             raise
-        raise ImportError(f"{missing.name}: not installed; dmise.{name} needs {_NEEDED[missing.name]}: apt install python3-zmq "
+        raise ImportError(f"{missing.name}: not installed for {sys.executable}; dmise.{name} needs {_NEEDED[missing.name]}: apt install python3-zmq "
                           "python3-protobuf python3-numpy, or pip install pyzmq protobuf numpy", name=missing.name) from None
     found = getattr(module, name) if _MODULE_OF[name] else module
     globals()[name] = found

@@ -160,8 +160,10 @@ def _covariance(source: Found, name: str, sigma_name: str) -> list[float] | None
         return numbers_in(source, name, 3)
     if getattr(source, sigma_name) is None:
         return None
-    variance = number_of(source, sigma_name)**2
-    return [variance, 0.0, variance]
+    sigma = number_of(source, sigma_name)
+    if not sigma > 0.0:
+        raise ValueError(f"{sigma_name}: must be > 0, got {sigma:g}")
+    return [sigma**2, 0.0, sigma**2]
 
 
 def number_of(source: Any, name: str) -> float:
