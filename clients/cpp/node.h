@@ -30,6 +30,7 @@ struct ObjectState {
   Vec<Gcrs> velocity_m_per_s;                   // the model's
   std::optional<Vec<Gcrs>> slope_m_per_s = {};  // derivative of the position, if another
   std::optional<AttitudeState> attitude = {};   // of an object that the node turns
+  std::optional<double> albedo = {};            // instead of the scenario's, of one that it moves
 };
 
 /// States in the order of `ActorTask::objects`. An object without one is not in the scene.

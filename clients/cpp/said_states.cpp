@@ -47,6 +47,9 @@ ObjectStates said_states(const ObjectStateList& said, const v1::OwnNodeBegin& be
     set_column(states.position_m, n, i, said[i]->position_m);
     set_column(states.slope_m_per_s, n, i, said[i]->slope_m_per_s.value_or(velocity_m_per_s));
     set_column(states.velocity_m_per_s, n, i, velocity_m_per_s);
+    if (!said[i]->albedo) continue;
+    states.albedo.resize(n, roster_albedo);
+    states.albedo[i] = *said[i]->albedo;
   }
   add_attitudes(said, begin, states);
   return states;

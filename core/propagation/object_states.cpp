@@ -126,6 +126,12 @@ struct StateSource::Scene {
     return in_gcrs(state_at(model(k), now.tai), now.earth, now.time).velocity_m_per_s;
   }
 
+  /// The albedo that a node tells of an object without elements that has a state.
+  std::optional<double> albedo_of(std::size_t k) const {
+    const auto* by_node = std::get_if<NodeMotion>(&model(k));
+    return by_node ? told_by(*by_node)->albedo_of(by_node->place) : std::nullopt;
+  }
+
   /// Empty if the attitude is a node's, which does not tell it.
   std::optional<AttitudeState> attitude_of(std::size_t k, const Attitude& attitude,
                                            const std::array<Vec<Gcrs>, 3>& sun_m) const {
@@ -241,6 +247,10 @@ void StateSource::add_models(const Scene& scene, ObjectStates& states) const {
     set_column(states.position_m, states.count, k, path.state.position_m);
     set_column(states.slope_m_per_s, states.count, k, path.state.velocity_m_per_s);
     set_column(states.velocity_m_per_s, states.count, k, scene.velocity_of(k));
+    if (const auto albedo = scene.albedo_of(k)) {
+      states.albedo.resize(states.count, roster_albedo);
+      states.albedo[k] = *albedo;
+    }
   }
 }
 

@@ -37,6 +37,9 @@ struct ObjectRoster {
   bool operator==(const ObjectRoster &) const = default;
 };
 
+/// In place of an object's albedo, where nobody tells one: that of the roster.
+inline constexpr double roster_albedo = -1.0;
+
 /// States of all objects at one tick in GCRS, as a structure of arrays. Slope is the derivative of
 /// the position (symmetric difference of the propagator), for interpolation; velocity is the
 /// model's. An object with `code` != 0 has no state: its numbers are 0. Attitudes, which few
@@ -52,12 +55,17 @@ struct ObjectStates {
   std::vector<std::uint32_t> attitude_object;   // m indices of objects, ascending
   std::vector<double> gcrs_from_body;           // 4 x m: all w, x, y, z of unit quaternions
   std::vector<double> attitude_rate_rad_per_s;  // 3 x m: angular velocity, GCRS axes
+  std::vector<double> albedo;                   // count, or `roster_albedo`; empty: all are that
 
   Vec<Gcrs> position(std::size_t i) const {
     return {position_m[i], position_m[count + i], position_m[2 * count + i]};
   }
   Vec<Gcrs> slope(std::size_t i) const {
     return {slope_m_per_s[i], slope_m_per_s[count + i], slope_m_per_s[2 * count + i]};
+  }
+  /// Albedo of object `i` at this tick; empty if it is that of the roster.
+  std::optional<double> albedo_of(std::size_t i) const {
+    return albedo.empty() || albedo[i] == roster_albedo ? std::nullopt : std::optional(albedo[i]);
   }
   /// Attitude of object `i`; empty if it has none.
   std::optional<AttitudeState> attitude(std::size_t i) const {

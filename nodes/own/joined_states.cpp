@@ -42,6 +42,14 @@ void join_attitudes(const ObjectStates& before, const ObjectStates& after, doubl
   }
 }
 
+void join_albedos(const ObjectStates& before, const ObjectStates& after, double u,
+                  ObjectStates& joined) {
+  joined.albedo.assign(before.count, roster_albedo);
+  for (std::size_t i = 0; i < before.count; ++i)
+    if (const auto start = before.albedo_of(i), end = after.albedo_of(i); start && end)
+      joined.albedo[i] = std::lerp(*start, *end, u);
+}
+
 }  // namespace
 
 ObjectStates joined_states(const ObjectStates& before, const ObjectStates& after, Tick tick,
@@ -67,6 +75,7 @@ ObjectStates joined_states(const ObjectStates& before, const ObjectStates& after
     }
   }
   joined.velocity_m_per_s = joined.slope_m_per_s;
+  if (!before.albedo.empty() && !after.albedo.empty()) join_albedos(before, after, u, joined);
   if (!before.attitude_object.empty()) join_attitudes(before, after, u, span_s, joined);
   return joined;
 }

@@ -212,6 +212,10 @@ void OwnActor::check(const ObjectStates& states) const {
     if (code != 0 && code != std::uint8_t(MotionCode::untold))
       throw Error("code: must be 0 or " + std::to_string(int(MotionCode::untold)) +
                   " (no state), got " + std::to_string(int(code)));
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    if (states.albedo_of(i) && (!is_moved_by(node_, *objects_[i]) || objects_[i]->geometry))
+      throw Error("albedo: is of objects without a geometry that the node moves, " +
+                  objects_[i]->name + " is none");
   if (states.attitude_object != turned_)
     throw Error("attitude_object: must be " + list_text(turned_) +
                 ", the objects that it turns, got " + list_text(states.attitude_object));

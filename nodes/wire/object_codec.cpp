@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <optional>
@@ -145,6 +146,8 @@ Encoded encode_body(const ObjectStates& states) {
     append_array(&message, &arrays, "attitude_rate_rad_per_s", {3, m},
                  states.attitude_rate_rad_per_s);
   }
+  if (!states.albedo.empty())
+    append_array(&message, &arrays, "albedo", {states.count}, states.albedo);
   return {MessageKind::object_states, message.SerializeAsString(), std::move(arrays)};
 }
 
@@ -167,6 +170,8 @@ ObjectStates decode_states(std::string_view payload, std::string_view arrays) {
     states.attitude_rate_rad_per_s =
         take_array<double>(message, arrays, "attitude_rate_rad_per_s", {3, m});
   }
+  if (std::ranges::any_of(message.arrays(), [](const auto& a) { return a.name() == "albedo"; }))
+    states.albedo = take_array<double>(message, arrays, "albedo", {states.count});
   return states;
 }
 

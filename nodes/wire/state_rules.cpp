@@ -18,6 +18,7 @@ using namespace field_rules;
 constexpr double distance_limit_m = 1e15;  // 6,700 au
 constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
 constexpr double rate_limit_rad_per_s = 1e6;
+constexpr double albedo_limit = 1000.0;  // a glint is brighter than a diffuse sphere
 constexpr std::size_t text_limit_bytes = 16384;
 constexpr std::size_t most_path_numbers = 30000;
 
@@ -77,6 +78,10 @@ void check(const ObjectStates& states) {
   all_within(states.velocity_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
   all_within(states.slope_m_per_s, speed_limit_m_per_s, "slope_m_per_s");  // often the velocity
   check_attitudes(states);
+  if (!states.albedo.empty() && states.albedo.size() != states.count)
+    refuse("albedo", "has another size");
+  for (const double albedo : states.albedo)
+    if (albedo != roster_albedo) in_range(albedo, 0.0, albedo_limit, "albedo");
 }
 
 void check(const EarthOrientation& earth) {

@@ -72,7 +72,7 @@ double ObjectSampler::magnitude(std::size_t object, const Motion& motion,
   if (const ObjectShape* own_shape = shape(object))
     if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m, 0))
       return shape_magnitude(*own_shape, *pose);
-  return diffuse_sphere_magnitude(view_.world().roster().objects[object].sphere,
+  return diffuse_sphere_magnitude(sphere(object, at.time),
                                   illumination(motion, at.observer.position_m));
 }
 
@@ -85,6 +85,12 @@ double ObjectSampler::magnitude_of_all_light(std::size_t object, const Motion& m
   const double light = light_of_magnitude(magnitude(object, motion, at)) +
                        secondary_photons(object, motion, at) / zero_mag_;
   return light > 0.0 ? std::min(darkest_mag, magnitude_of_light(light)) : darkest_mag;
+}
+
+DiffuseSphere ObjectSampler::sphere(std::size_t object, SimTime t) const {
+  DiffuseSphere sphere = view_.world().roster().objects[object].sphere;
+  if (const auto albedo = view_.world().albedo(object, t)) sphere.albedo = *albedo;
+  return sphere;
 }
 
 const ObjectShape* ObjectSampler::shape(std::size_t object) const {
@@ -100,7 +106,7 @@ double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape
 double ObjectSampler::secondary_photons(std::size_t object, const Motion& motion,
                                         const ExposureInstant& at) const {
   if (!with_secondary_) return 0.0;
-  const DiffuseSphere& sphere = view_.world().roster().objects[object].sphere;
+  const DiffuseSphere sphere = this->sphere(object, at.time);
   Rotation<Body, Gcrs> axes;  // a sphere looks the same in any
   const Illumination seen = illumination(motion, at.observer.position_m);
   const Vec<Body> to_viewer = axes * unit(at.observer.position_m - motion.position_m);

@@ -67,6 +67,8 @@ class ObjectSampler {
                        int rings = earthshine_flux_rings) const;
 
  private:
+  /// What an object without a shape is, at a time.
+  DiffuseSphere sphere(std::size_t object, SimTime t) const;
   double secondary_photons(std::size_t object, const Motion& motion,
                            const ExposureInstant& at) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -138,6 +139,17 @@ std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime
   const double tick_s = (after->time - before->time).seconds();
   return rotation_of<Gcrs, Body>(
       interpolate_attitude((t - before->time).seconds() / tick_s, tick_s, *start, *end));
+}
+
+std::optional<double> World::albedo(std::size_t i, SimTime t) const {
+  const auto [before, after, index] = around(t);
+  const auto k = place(i);
+  if (!k) return std::nullopt;
+  const auto start = before->albedo_of(*k), end = after->albedo_of(*k);
+  if (!start || !end) return std::nullopt;
+  if (before == after) return start;
+  const double tick_s = (after->time - before->time).seconds();
+  return std::lerp(*start, *end, (t - before->time).seconds() / tick_s);
 }
 
 namespace {

@@ -68,6 +68,10 @@ class World {
   /// Attitude between the ticks around `t`; nothing for an object without one. `t` as for `motion`.
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body(std::size_t i, SimTime t) const;
 
+  /// Albedo of the object between the ticks around `t`, linear; nothing if that is the roster's.
+  /// `t` as for `motion`.
+  std::optional<double> albedo(std::size_t i, SimTime t) const;
+
   /// Angle that the object turns by from `start` to `end` [rad], whole turns too; 0 for an object
   /// without an attitude. Times as for `motion`.
   double turn_rad(std::size_t i, SimTime start, SimTime end) const;

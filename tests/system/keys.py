@@ -39,7 +39,7 @@ def test(binary, directory):
     scenario = write_scenario(directory, duration_s=60, network=", real_time: 12")
     keys = directory / "keys"
     code, out, _ = says(binary, "keygen", keys, "--scenario", scenario, "--hosts", 2)
-    check(code == 0 and len(out.splitlines()) == 11, f"keygen makes {len(out.splitlines())} keys")
+    check(code == 0 and len(out.splitlines()) == 12, f"keygen makes {len(out.splitlines())} keys")
     modes = {oct(p.stat().st_mode & 0o777) for p in keys.glob("*.key")}
     check(modes == {"0o600"}, f"their owner alone may read them: {modes}")
     code, _, err = says(binary, "keygen", keys, "alpha")

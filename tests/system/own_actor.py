@@ -132,6 +132,28 @@ def turns(binary, directory):
     check(len(rows[1]) == 21 and all(math.dist(a, b) < 1e-12 for a, b in zip(*rows)), "a node turns an object as a scenario does")
 
 
+def tells_an_albedo(binary, directory):
+    """The light is that of the scenario's albedo, or of another from a tick on."""
+    plain, own = write(directory, "albedo.yaml", node=program("walk"), more=", albedo: 0.4"), program("walk", albedo=0.4)
+    dmise(binary, "run", plain, "--allow-programs", "--out", directory / "albedo")
+    for command, network in (("run", ""), ("launch", ", sensors_propagate: off")):
+        scenario = write(directory, "told.yaml", node=own, network=network)
+        dmise(binary, command, scenario, "--allow-programs", "--out", directory / f"told-{command}")
+        check_like(directory / f"told-{command}", directory / "albedo", f"{command}: an albedo that is told is that of the scenario")
+    magnitudes = []
+    for name, node in (("even", program("walk")), ("brighter", program("walk", albedo=0.2, bright_from=10))):
+        dmise(binary, "run", write(directory, f"{name}.yaml", node=node), "--allow-programs", "--out", directory / name)
+        lines = map(json.loads, (directory / name / "truth.jsonl").read_text().splitlines())
+        magnitudes.append([line["true_magnitude"] for line in lines if line["name"] == "probe" and line["sensor"] == "eye"])
+    change = [b - a for a, b in zip(*magnitudes)]
+    check(len(change) == 2 and change[0] == 0 and abs(change[1] + 2.5 * math.log10(2)) < 1e-9, f"twice as bright from a tick on: {change}")
+    for fault, words in ((program("walk", albedo=2000), r"gnc: tick 0: albedo: must be .*got 2000"),
+                         (program("walk", albedo=-0.5), r"gnc: tick 0: albedo: must be .*got -0.5")):
+        said = dmise(binary, "run", write(directory, "wrong.yaml", node=fault), "--allow-programs", "--out", directory / "dark", "--force",
+                     code=1)
+        check(re.search(words, said), said.strip().splitlines()[-1])
+
+
 def dies_and_goes_on(binary, directory, schedules, seed):
     """Programs that are killed or stopped at random ticks: with checkpoints and without."""
     reference = None
@@ -273,6 +295,7 @@ def test(binary, directory):
     follows_a_file(binary, directory)
     steps_far_apart(binary, directory)
     turns(binary, directory)
+    tells_an_albedo(binary, directory)
     ends_with_a_reason(binary, directory)
     asks_of_what_is_odd(binary, directory)
     dies_and_goes_on(binary, directory, schedules, seed)

@@ -20,7 +20,9 @@ class Walk:
         self.state[:3] += dt * self.state[3:] + dt * dt / 2 * pull
         self.state[3:] += dt * pull + push
         self.t_s = t_s
-        return dmise.State(position_m=self.state[:3], velocity_m_per_s=self.state[3:])
+        brighter = 2.0 if world.tick >= options.get("bright_from", 1e9) else 1.0
+        return dmise.State(position_m=self.state[:3], velocity_m_per_s=self.state[3:],
+                           albedo=brighter * options["albedo"] if "albedo" in options else None)
 
     def checkpoint(self):
         return np.append(self.state, self.t_s).tobytes()

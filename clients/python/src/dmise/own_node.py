@@ -51,7 +51,7 @@ class World:
     objects: list[str] = field(default_factory=list)  # those that it moves or turns, in the order of arrays
     seed: int = 0  # of the scenario
     known: Known = field(default_factory=Known)  # to a tracker
-    messages: Any = field(default=(), repr=False)  # that came since the last tick, OwnNodeHeard each
+    messages: tuple[Any, ...] = field(default=(), repr=False)  # that came since the last tick, OwnNodeHeard each
     truth: ObjectStates | None = field(default=None, repr=False)  # of all objects at mid exposure, to a sensor with `truth: on`
 
     @functools.cached_property
@@ -238,7 +238,7 @@ class _Conversation:
         said = self._model(*arguments)
         return asyncio.run(_result_of(said)) if inspect.isawaitable(said) else said
 
-    def _world(self, at: Any, environment: bytes, messages: Any = ()) -> World:
+    def _world(self, at: Any, environment: bytes, messages: tuple[Any, ...] = ()) -> World:
         return World(at.tick, at.time_ns, environment, self._start, self._begun.node, self._objects, self._begun.seed,
                      self._known, messages)
 
@@ -247,7 +247,7 @@ class _Conversation:
             answer.checkpoint = self._model.checkpoint()
 
     def _step(self, step: Any, environment: bytes) -> list[bytes]:
-        said = self._said_by(step.time_ns / 1e9, self._world(step, environment, step.heard), self._options)
+        said = self._said_by(step.time_ns / 1e9, self._world(step, environment, tuple(step.heard)), self._options)
         stepped = protocol.OwnNodeStepped()
         self._checkpoint(step, stepped)
         return [protocol.OwnNodeAnswer(stepped=stepped).SerializeToString(), *self._states.frames(said, step.tick, step.time_ns)]

@@ -13,6 +13,7 @@ from . import protocol
 from .records import Floats
 
 NO_STATE = 18  # code of an object that its node gives no state
+ROSTER_ALBEDO = -1.0
 
 
 @dataclass
@@ -22,12 +23,14 @@ class State:
     gcrs_from_body  unit quaternion w, x, y, z (4, or 4 x n) with v_gcrs = q v_body q*, of objects that the node turns
     rate_rad_per_s  angular velocity of the body in GCRS axes; without it 0
     slope_m_per_s   derivative of the position where it is not the velocity, for interpolation between ticks
+    albedo          of an object that the node moves, instead of the scenario's: a number, or n of them
     """
     position_m: Any = None
     velocity_m_per_s: Any = None
     gcrs_from_body: Any = None
     rate_rad_per_s: Any = None
     slope_m_per_s: Any = None
+    albedo: Any = None
 
 
 class StatesWriter:
@@ -78,8 +81,12 @@ class StatesWriter:
         if self._turned:
             self._write("gcrs_from_body", gcrs_from_body, self._turned)
             self._write("attitude_rate_rad_per_s", rate_rad_per_s, self._turned)
-        at = protocol.ObjectStates(tick=tick, time_ns=time_ns).SerializeToString()
-        return [at + self._layout, bytes(self._bytes)]
+        head = protocol.ObjectStates(tick=tick, time_ns=time_ns)
+        arrays = bytes(self._bytes)
+        if (albedo := _albedos(said, count)) is not None:
+            head.arrays.add(name="albedo", type="float64", shape=(count,), offset_bytes=len(arrays))
+            arrays += albedo.astype("<f8").tobytes()
+        return [self._layout + head.SerializeToString(), arrays]
 
     def _write(self, name: str, values: Floats | None, columns: list[int] | slice = slice(None)) -> None:
         self._arrays[name][:] = 0.0 if values is None else values[:, columns]
@@ -107,7 +114,20 @@ def _together(each: list[State | None]) -> State:
         return np.column_stack([np.zeros(rows) if one is None else _shaped(one, (rows,), name) for one in given])
 
     return State(columns("position_m", 3), columns("velocity_m_per_s", 3), columns("gcrs_from_body", 4),
-                 columns("rate_rad_per_s", 3), columns("slope_m_per_s", 3))
+                 columns("rate_rad_per_s", 3), columns("slope_m_per_s", 3), _albedos_of(each))
+
+
+def _albedos_of(each: list[State | None]) -> list[float] | None:
+    given = [None if state is None else state.albedo for state in each]
+    if all(one is None for one in given):
+        return None
+    return [ROSTER_ALBEDO if one is None else _shaped(one, (), "albedo").item() for one in given]
+
+
+def _albedos(said: State, count: int) -> Floats | None:
+    if said.albedo is None:
+        return None
+    return np.full(count, said.albedo, np.float64) if np.ndim(said.albedo) == 0 else _shaped(said.albedo, (count,), "albedo")
 
 
 def _matrix(state: State, name: str, rows: int, count: int) -> Floats | None:
