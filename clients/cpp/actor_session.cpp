@@ -33,6 +33,9 @@ void check(const v1::OwnNodeBegin& begin, const ActorTask& task) {
                 begin.sensor());
   if (begin.has_tracking())
     throw Error("the program moves objects, the scenario has it make the tracks");
+  if (begin.has_observing())
+    throw Error("the program moves objects, the scenario has it observe as " +
+                begin.observing().sensor().name());
   if (!task.options.is_object()) throw Error("begin: options_json: must be one JSON object");
   if (task.tick.ns <= 0) throw Error("begin: tick_ns: must be > 0");
   if (task.last_tick < 0) throw Error("begin: last_tick: must be >= 0");

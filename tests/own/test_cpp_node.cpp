@@ -208,6 +208,9 @@ TEST_F(CppNode, RefusesWhatIsNoBegin) {
   wrong = begin();
   wrong.mutable_tracking();
   EXPECT_THAT(why_begin_fails(wrong), HasSubstr("make the tracks"));
+  wrong = begin();
+  wrong.mutable_observing()->mutable_sensor()->set_name("radar");
+  EXPECT_THAT(why_begin_fails(wrong), HasSubstr("observe as radar"));
   for (const char* text : {"", "[1]", "{", "{\"a\": nan}"})
     EXPECT_EQ(why_begin_fails(begin(text)), "begin: options_json: must be one JSON object");
   for (const double every_s : {0.0, -1.0, std::nan(""), 1e300}) {

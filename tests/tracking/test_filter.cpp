@@ -106,6 +106,7 @@ void add_ranges(const ForceModel& forces, TrackingTrial& trial, double sigma_m,
 }
 
 // Errors over their covariance: the mean of 60 x 6 squares is 1 +- 0.075.
+// Three sites at 1 arcsec know the place to 4 m by directions alone.
 TEST(Filter, TakesRangesAndTheirRates) {
   const ForceModel forces(ForceSettings{});
   double sum_nees = 0, with_m2 = 0, without_m2 = 0;
@@ -128,7 +129,7 @@ TEST(Filter, TakesRangesAndTheirRates) {
     with_m2 += end.covariance.topLeftCorner<3, 3>().trace();
   }
   EXPECT_NEAR(sum_nees / seeds, 1, 0.25);
-  EXPECT_LT(with_m2, 0.05 * without_m2);
+  EXPECT_LT(with_m2, 0.2 * without_m2);
 }
 
 TEST(Filter, RefusesARangeOfAnotherObjectAndStaysAsItWas) {
