@@ -211,7 +211,8 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   DetectionResult result;
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
-  if (!known && stars_trail(scene)) {
+  // Of an unknown mount the frame itself has shown the trails, and more stars than a catalogue.
+  if (stars_trail(scene) && (!known || header.mount == "unknown")) {
     detect_among_trails(scene, header, threads, result);
     return result;
   }
