@@ -187,8 +187,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   write_products(directory, list, counts_csv(found, grid, clock),
                  range_figure(track, grid, population.elements, found, figure));
   if (!options.csv && !options.jsonl)
-    std::printf("-> %s/passes.csv, passes.jsonl, counts.csv, figure.svg\n",
-                directory.c_str());
+    std::printf("-> %s/passes.csv, passes.jsonl, counts.csv, figure.svg\n", directory.c_str());
 }
 
 void visible(const VisibleOptions& options) {

@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base/units.h"
 #include "core/base/assignment.h"
+#include "core/base/units.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"
 #include "core/tracking/line_of_light.h"
