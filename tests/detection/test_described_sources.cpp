@@ -113,7 +113,7 @@ TEST_F(DescribedSources, AStreakIsWhereOurOwnDetectorHasIt) {
   source.centroid = {{o.x_px, o.y_px}, o.covariance_px2};
   source.light_e = o.signal_e;
   source.snr = o.snr;
-  const auto result = described({source}, exposed, header, threads);
+  const auto result = described(std::vector{source}, exposed, header, threads);
   ASSERT_EQ(result.detections.size(), 1u);
   const Detection& d = result.detections[0];
   const double tolerance_rad = 0.05 / 1663.0;
