@@ -110,7 +110,7 @@ class Frames(unittest.TestCase):
                 for field in ours.dtype.names:
                     value = getattr(record, field)
                     if np.size(value):
-                        np.testing.assert_array_equal(row[field], value, err_msg=f"{name}.{field}")
+                        np.testing.assert_array_equal(row[field], np.nan if value is None else value, err_msg=f"{name}.{field}")
         self.assertGreater(sum(len(f.truth) for f in frames), 0)
         self.assertEqual(frames[0].report, next(r for r in self.run_.frames if r.sensor == "west"))
 

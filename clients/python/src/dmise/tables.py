@@ -52,14 +52,14 @@ class Table(np.ndarray[Any, Any]):
 
 
 def table_of(records: Sequence[Record], cls: type[Record]) -> Table:
-    """A table of records of a class, which may be none. A list of numbers that a record lacks is zeros."""
+    """A table of records of a class, which may be none. A list of numbers that a record lacks is zeros, a number that it lacks is NaN."""
     fields = [_field(name, records, cls()) for name in vars(cls())]
     table = np.zeros(len(records), dtype=fields)
     for name, *_ in fields:
         for i, record in enumerate(records):
             value = getattr(record, name)
             if np.size(value):
-                table[name][i] = value
+                table[name][i] = np.nan if value is None else value
     return table.view(Table)
 
 
@@ -70,7 +70,7 @@ def _field(name: str, records: Sequence[Record], usual: Record) -> tuple[Any, ..
         return name, np.float64, (_LENGTHS.get(name) or (3 if name.endswith(_VECTORS) else 0),)
     if isinstance(value, str):
         return name, f"U{max([1, *(len(getattr(record, name)) for record in records)])}"
-    return name, {bool: np.bool_, int: np.int64, float: np.float64}[type(value)]
+    return name, {bool: np.bool_, int: np.int64, float: np.float64, type(None): np.float64}[type(value)]
 
 
 def _parts(name: str, size: int) -> Iterable[str]:
