@@ -211,8 +211,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   DetectionResult result;
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
-  // Of an unknown mount the frame itself has shown the trails, and more stars than a catalogue.
-  if (stars_trail(scene) && (!known || header.mount == "unknown")) {
+  if (!known && stars_trail(scene)) {
     detect_among_trails(scene, header, threads, result);
     return result;
   }

@@ -323,10 +323,8 @@ class TrailSearch {
   bool is_other_shape(const TrailedStar& star) const {
     const Trail& t = star.trail;
     const Psf psf = scene_.psf.at({t.x_px, t.y_px});
-    const auto all = light_.pixels_less_stars(t, 3 * light_.filter_px() + 0.5);
-    // Another source before the trail does not make it another shape.
-    const auto pixels = without_outliers(all, {&t, 1}, 0.0, 0.15, psf);
-    if (pixels.size() < 12 || 10 * pixels.size() < 6 * all.size()) return true;
+    const auto pixels = light_.pixels_less_stars(t, 3 * light_.filter_px() + 0.5);
+    if (pixels.size() < 12) return false;
     const auto with = [&](const Trail& start, unsigned free) {
       return fit_trails(pixels, {start}, {free}, settings(psf, pixels));
     };

@@ -94,18 +94,16 @@ MedianOf median_and_error(const std::vector<double>& values) {
 }
 
 /// Measured elongation over that of a mount at rest: 1 for it, up to 1.6 for long trails, and 0 for
-/// stars that do not trail. The error is large where trails are too short to tell. `turned`: at 45
-/// degrees to such trails instead, where a mount at rest has none.
+/// stars that do not trail. The error is large where trails are too short to tell.
 MedianOf elongation_at_rest(const FrameHeader& at_rest, const CountImage& counts,
-                            const StarShape& shape, bool turned) {
+                            const StarShape& shape) {
   const StarMotion motion(at_rest, counts.columns, counts.rows);
   std::vector<double> ratios;
   for (const StarEllipse& e : shape.ellipses) {
     const PixelPosition d = motion.trail_at({e.x_px, e.y_px});
     const double plus = (d.x_px * d.x_px - d.y_px * d.y_px) / 12, cross = d.x_px * d.y_px / 6;
     const double square = plus * plus + cross * cross;
-    const double along = turned ? e.cross * plus - e.plus * cross : e.plus * plus + e.cross * cross;
-    if (square > 1e-6) ratios.push_back(along / square);
+    if (square > 1e-6) ratios.push_back((e.plus * plus + e.cross * cross) / square);
   }
   if (ratios.size() < 5) return {0.0, 1e9};
   return median_and_error(ratios);
@@ -164,21 +162,16 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
   if (may_be_at_rest(header)) {
     FrameHeader at_rest = header;
     set_at_rest(at_rest);
-    const MedianOf ratio = elongation_at_rest(at_rest, counts, shape, false);
-    const MedianOf turned = elongation_at_rest(at_rest, counts, shape, true);
-    if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8 &&
-        std::abs(turned.value) < 0.4 + 3 * turned.error) {
+    const MedianOf ratio = elongation_at_rest(at_rest, counts, shape);
+    if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8) {
       header = std::move(at_rest);
       const auto trail = trail_in_the_middle(header, counts.columns, counts.rows);
       cards.assumed("mount: at rest: " + trail_text(trail) + ", as the Earth turns");
       return;
     }
   }
-  // Fits of single images are more exact as long as few trails touch.
-  constexpr double short_in_widths = 12.0;
-  const bool is_short = shape.length_px > 0 && shape.length_px < short_in_widths * shape.sigma_px;
   std::optional<PixelPosition> trail;
-  if (!is_short && are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
+  if (are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
   if (!trail) trail = measured_trail(shape);
   if (!trail) {
     cards.assumed("mount: turns with the stars, which do not trail");
