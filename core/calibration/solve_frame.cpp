@@ -126,9 +126,7 @@ FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveS
   const FrameHeader& h = frame.header;
   FrameSolution out;
   const PlateSky sky(stars, observer_of(h, out.notes));
-  // Attitudes of an unknown mount are by the trails that the frame shows.
-  const bool moves =
-      h.mount == "unknown" || (!settings.blind && !h.unknown.has(FrameFact::pointing));
+  const bool moves = !settings.blind && !h.unknown.has(FrameFact::pointing);
   const StarMotion motion(h, frame.counts.columns, frame.counts.rows);
   const StarSourceSettings search{
       .gain_e_per_dn = h.gain_e_per_dn,

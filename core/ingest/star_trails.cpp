@@ -8,10 +8,6 @@
 #include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/star_sources.h"
-#include "core/detection/common_trail.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/make_report.h"
-#include "core/detection/psf.h"
 #include "core/detection/star_motion.h"
 #include "core/frames/earth_orientation.h"
 #include "core/time/iso8601.h"
@@ -109,28 +105,7 @@ MedianOf elongation_at_rest(const FrameHeader& at_rest, const CountImage& counts
   return median_and_error(ratios);
 }
 
-/// Whether most images are long in one direction, also blends of trails.
-bool are_aligned(const StarShape& shape) {
-  constexpr double least_agreement = 0.4;  // of directions
-  double plus = 0.0, cross = 0.0;
-  for (const StarEllipse& e : shape.ellipses) {
-    const double size = std::hypot(e.plus, e.cross);
-    if (size > 0) plus += e.plus / size, cross += e.cross / size;
-  }
-  return std::hypot(plus, cross) > least_agreement * double(shape.ellipses.size());
-}
-
-/// The trail that most edges of light show.
-std::optional<PixelPosition> trail_by_edges(const CountImage& counts, const FrameHeader& header,
-                                            Threads& threads) {
-  const Background background(counts, detection_limits::background_cell_px, threads);
-  const StarMotion none(header, counts.columns, counts.rows);
-  return common_trail({counts, background, none, header.gain_e_per_dn, lowest_clipped_dn(header),
-                       sigma_with_pixel(header.psf_fwhm_px), false,
-                       PsfField::gaussian(header.psf_fwhm_px)});
-}
-
-/// The trail of most stars by their shapes, if it is significant.
+/// The trail of most stars, if it is significant.
 std::optional<PixelPosition> measured_trail(const StarShape& shape) {
   double length_px = shape.length_px, angle_rad = shape.angle_rad;
   if (length_px == 0) {
@@ -158,7 +133,7 @@ std::string trail_text(const PixelPosition& trail) {
 
 /// Finds by the stars whether the mount is at rest, drifts evenly or follows them.
 void measure_attitudes(const StandardCards& cards, const CountImage& counts, const StarShape& shape,
-                       Threads& threads, FrameHeader& header) {
+                       FrameHeader& header) {
   if (may_be_at_rest(header)) {
     FrameHeader at_rest = header;
     set_at_rest(at_rest);
@@ -170,9 +145,7 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
       return;
     }
   }
-  std::optional<PixelPosition> trail;
-  if (are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
-  if (!trail) trail = measured_trail(shape);
+  const auto trail = measured_trail(shape);
   if (!trail) {
     cards.assumed("mount: turns with the stars, which do not trail");
     return;
@@ -182,14 +155,14 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
 }
 
 void set_attitudes(const StandardCards& cards, const CountImage& counts,
-                   const std::optional<StarShape>& shape, Threads& threads, FrameHeader& header) {
+                   const std::optional<StarShape>& shape, FrameHeader& header) {
   const std::string stated = cards.text("MOUNT");
   header.mount = "unknown";
   if (stated == "sidereal" || (stated == "fixed" && may_be_at_rest(header))) {
     header.mount = stated;
     if (stated == "fixed") set_at_rest(header);
   } else if (shape) {
-    measure_attitudes(cards, counts, *shape, threads, header);
+    measure_attitudes(cards, counts, *shape, header);
   } else {
     cards.assumed("mount: taken to turn with the stars: too few to measure it");
   }
@@ -210,7 +183,7 @@ bool set_star_images(const StandardCards& cards, const CountImage& counts, Threa
                      FrameHeader& header) {
   const auto shape = shape_of(counts, header, threads);
   const bool knows_width = set_width(cards, shape, header);
-  set_attitudes(cards, counts, shape, threads, header);
+  set_attitudes(cards, counts, shape, header);
   return knows_width;
 }
 
@@ -218,8 +191,7 @@ void set_trails_of_solved(const CountImage& counts, Threads& threads, FrameHeade
   solved.camera_from_gcrs.fill(solved.camera_from_gcrs[1]);
   FrameNotes unused;
   const FitsValues stated = {{"MOUNT", solved.mount}};
-  set_attitudes(StandardCards(stated, unused), counts, shape_of(counts, solved, threads), threads,
-                solved);
+  set_attitudes(StandardCards(stated, unused), counts, shape_of(counts, solved, threads), solved);
 }
 
 }  // namespace dmise

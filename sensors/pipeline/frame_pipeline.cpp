@@ -202,7 +202,7 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world,
   return frame;
 }
 
-void FramePipeline::give_back(CountImage counts) { work_->give_back(std::move(counts)); }
+void FramePipeline::give_back(CountImage&& counts) { work_->give_back(std::move(counts)); }
 
 /// What the user's detector finds in a frame, or no search; nothing if the run is being stopped.
 std::optional<DetectionResult> FramePipeline::Work::search(const Frame& exposed,

@@ -76,7 +76,7 @@ class FrameMaker {
   virtual FrameProducts run(const FrameTimes& exposure, const World& world,
                             StatesInField* states) = 0;
   /// Takes back the counts of a finished frame, so that the next frame reuses their memory.
-  virtual void give_back(CountImage) {}
+  virtual void give_back(CountImage&&) {}
   /// Returns the frame to expose first so that the detector is in the right state for `frame`:
   /// `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
   virtual std::uint32_t first_frame_for(std::uint32_t frame) const { return frame; }
@@ -98,7 +98,7 @@ class FramePipeline : public FrameMaker {
   /// not.
   FrameProducts run(const FrameTimes& exposure, const World& world,
                     StatesInField* states = nullptr) override;
-  void give_back(CountImage counts) override;
+  void give_back(CountImage&& counts) override;
   std::uint32_t first_frame_for(std::uint32_t frame) const override;
   std::string evaluator() const override;
   std::uint32_t most_frames_made_again() const override;
