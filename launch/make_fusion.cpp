@@ -10,7 +10,7 @@ namespace dmise {
 std::unique_ptr<Participant> make_fusion(const Scenario& scenario, const Clock& clock,
                                          const std::string& directory,
                                          const OwnNodeSettings& settings,
-                                         std::shared_ptr<Tracker> recorded) {
+                                         const std::shared_ptr<Tracker>& recorded) {
   auto fusion = std::make_unique<FusionEvaluator>(scenario, clock, directory, settings);
   if (recorded) fusion->replay(std::move(recorded));
   return fusion;

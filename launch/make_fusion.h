@@ -18,7 +18,7 @@ class Tracker;
 std::unique_ptr<Participant> make_fusion(const Scenario& scenario, const Clock& clock,
                                          const std::string& directory,
                                          const OwnNodeSettings& settings,
-                                         std::shared_ptr<Tracker> recorded);
+                                         const std::shared_ptr<Tracker>& recorded);
 /// Returns what a tracker has said in a recorded run. Throws `ConfigError` as `RecordedTracker`.
 std::shared_ptr<Tracker> make_recorded_tracker(const Scenario& scenario, const std::string& digest,
                                                const std::string& path);

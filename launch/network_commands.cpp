@@ -18,7 +18,7 @@ void add_commands(CLI::App& app) {
 }
 
 std::unique_ptr<Participant> make_fusion(const Scenario&, const Clock&, const std::string&,
-                                         const OwnNodeSettings&, std::shared_ptr<Tracker>) {
+                                         const OwnNodeSettings&, const std::shared_ptr<Tracker>&) {
   throw Error(no_fusion);
 }
 

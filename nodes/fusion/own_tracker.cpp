@@ -62,7 +62,7 @@ void add_sensor(const SensorConfig& sensor, v1::OwnNodeTracking& tracking) {
 
 }  // namespace
 
-OwnTracker::OwnTracker(const Scenario& scenario, const ObjectRoster& known, Clock clock,
+OwnTracker::OwnTracker(const Scenario& scenario, const ObjectRoster& known, const Clock& clock,
                        OwnNodeSettings settings, Replay replay)
     : scenario_(scenario),
       environment_(clock),

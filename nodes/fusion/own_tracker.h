@@ -29,7 +29,7 @@ class OwnTracker : public Tracker {
 
   /// `scenario` must outlive it, and have `fusion.node`. `known`: objects with elements that the
   /// program may know beforehand.
-  OwnTracker(const Scenario& scenario, const ObjectRoster& known, Clock clock,
+  OwnTracker(const Scenario& scenario, const ObjectRoster& known, const Clock& clock,
              OwnNodeSettings settings, Replay replay);
 
   std::optional<Tracked> step(Tick tick, std::span<const SearchedFrame> frames) override;
