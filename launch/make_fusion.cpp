@@ -12,7 +12,7 @@ std::unique_ptr<Participant> make_fusion(const Scenario& scenario, const Clock& 
                                          const OwnNodeSettings& settings,
                                          const std::shared_ptr<Tracker>& recorded) {
   auto fusion = std::make_unique<FusionEvaluator>(scenario, clock, directory, settings);
-  if (recorded) fusion->replay(std::move(recorded));
+  if (recorded) fusion->replay(recorded);
   return fusion;
 }
 
