@@ -111,14 +111,20 @@ class NodesOfObjects : public testing::Test {
 // What is in the file is read when it is started.
 TEST_F(NodesOfObjects, AnFmuMovesOneObjectAndDoesNothingElse) {
   const std::string unit = "[{name: unit, fmu: " DMISE_SOURCE_DIR
-                           "/README.md, outputs: {position_m: [x, y, z]}}]",
+                           "/README.md, outputs: {position_m: [x, y, z], "
+                           "velocity_m_per_s: [u, v, w]}}]",
                     one = "  - {name: a, motion: {node: unit}, radius_m: 1}\n";
   const OwnNode node = load(one, unit).own_nodes.at(0);
   EXPECT_TRUE(node.is_fmu);
   EXPECT_THAT(node.run,
               testing::ElementsAre("python3", "-m", "dmise.fmi", testing::EndsWith(".md")));
-  EXPECT_EQ(node.options_json,
-            R"({"inputs":{},"outputs":{"position_m":["x","y","z"]},"options":{}})");
+  EXPECT_EQ(
+      node.options_json,
+      R"({"inputs":{},"outputs":{"position_m":["x","y","z"],"velocity_m_per_s":["u","v","w"]},)"
+      R"("options":{}})");
+  const std::string no_velocity = std::string(unit).replace(unit.find(", velocity"), 29, "");
+  EXPECT_THAT(config_error_of([&] { load(one, no_velocity); }),
+              HasSubstr("nodes[0].outputs: lacks velocity_m_per_s"));
   const std::string two = one + "  - {name: b, motion: {node: unit}, radius_m: 1}\n";
   EXPECT_THAT(config_error_of([&] { load(two, unit); }),
               HasSubstr("nodes[0]: an FMU moves or turns one object, got 2"));
