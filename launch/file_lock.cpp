@@ -9,13 +9,14 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 
 namespace dmise {
 
 FileLock::FileLock(const std::string& path) {
   std::error_code code;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), code);
-  fd_ = open(path.c_str(), O_RDWR | O_CREAT, 0666);
+  fd_ = open_own_file(path.c_str(), O_RDWR, 0666);
   if (fd_ < 0) throw Error(path + ": can't be created: " + std::strerror(errno));
 }
 

@@ -20,6 +20,7 @@
 #include "core/base/formatted.h"
 #include "core/base/paths.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 
 namespace dmise {
 namespace {
@@ -57,6 +58,11 @@ std::string content_of(int fd) {
   const ssize_t n = pread(fd, text.data(), text.size(), 0);
   text.resize(n > 0 ? std::size_t(n) : 0);
   return text;
+}
+
+bool has_other_names(int fd) {
+  struct stat open {};
+  return fstat(fd, &open) == 0 && open.st_nlink > 1;
 }
 
 /// Whether the path still refers to the open file.
@@ -132,9 +138,10 @@ RunLock::~RunLock() {
 
 bool RunLock::try_to_take(const std::string& directory, bool last) {
   // Without O_CLOEXEC: the run's processes hold the lock too.
-  const int fd = open(path_.c_str(), O_RDWR | O_CREAT, 0644);
+  const int fd = open_own_file(path_.c_str(), O_RDWR);
   if (fd < 0) throw Error(directory + ": can't be written: " + std::strerror(errno));
   FileLock file(fd);
+  if (has_other_names(fd)) throw Error(path_ + ": is a file of another name, too");
   bool taken = false;
   try {
     taken = file.take();
@@ -175,7 +182,8 @@ void RunLock::release_to_exec() {
 }
 
 std::optional<LockHolder> RunLock::written_in(const std::string& directory) {
-  const int fd = open((directory + "/.run-lock").c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd =
+      open((directory + "/.run-lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (fd < 0) return std::nullopt;
   const std::string text = content_of(fd);
   close(fd);

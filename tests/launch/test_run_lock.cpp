@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -162,6 +163,22 @@ TEST_F(RunLocks, PassToTheProgramThatTheirProcessBecomes) {
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_EQ(refusal(), "");
+}
+
+// Somebody has planted it: what it names is not written into.
+TEST_F(RunLocks, DoNotFollowLinks) {
+  const std::string other = directory + "/other", nothing = directory + "/nothing";
+  std::ofstream(other) << "untouched";
+  for (const std::string& target : {other, nothing}) {
+    std::filesystem::create_symlink(target, file());
+    EXPECT_EQ(refusal(), "");
+  }
+  ASSERT_EQ(mkfifo(file().c_str(), 0600), 0);
+  EXPECT_EQ(refusal(), "");
+  std::filesystem::create_hard_link(other, file());
+  EXPECT_THROW(RunLock(directory, no_patience_s), Error);
+  EXPECT_EQ(std::filesystem::file_size(other), 9u);
+  EXPECT_FALSE(std::filesystem::exists(nothing));
 }
 
 TEST_F(RunLocks, TellWhichRunTheyAreOf) {
