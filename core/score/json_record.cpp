@@ -210,6 +210,10 @@ Detection detection_of(const JsonRecord& record) {
 #undef DMISE_LIST
 #undef DMISE_VECTOR
 #undef DMISE_MEASURED
+  if (d.range_m.has_value() != d.range_sigma_m.has_value())
+    record.fail("range_m", "goes with range_sigma_m");
+  if (d.range_rate_m_per_s.has_value() != d.range_rate_sigma_m_per_s.has_value())
+    record.fail("range_rate_m_per_s", "goes with range_rate_sigma_m_per_s");
   return d;
 }
 

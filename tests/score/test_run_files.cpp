@@ -193,6 +193,12 @@ TEST_F(RunFiles, RefusalsNameFileLineAndKey) {
             "must be a JSON object");
   EXPECT_EQ(refused("detections.jsonl", detection_line, "\"x_px\":20.25", "\"x_px\":1e300"),
             "x_px: must be at most 1e30, got 1e+300");
+  EXPECT_EQ(
+      refused("detections.jsonl", detection_line, "\"x_px\":20.25", "\"range_m\":7e5,\"x_px\":1"),
+      "range_m: goes with range_sigma_m");
+  EXPECT_EQ(refused("detections.jsonl", detection_line, "\"x_px\":20.25",
+                    "\"range_rate_sigma_m_per_s\":1,\"x_px\":1"),
+            "range_rate_m_per_s: goes with range_rate_sigma_m_per_s");
   EXPECT_EQ(refused("detections.jsonl", detection_line, "[0.01,0.002,0.03]", "[0.01,-2e30,0.03]"),
             "covariance_px2: must be at most 1e30, got [0.01,-2e+30,0.03]");
   EXPECT_EQ(refused("detections.jsonl", detection_line, "\"x_px\":20.25,", ""), "x_px: is missing");
