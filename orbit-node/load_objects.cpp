@@ -61,6 +61,7 @@ class Loader {
 
   ObjectPopulation load() {
     for (const auto& source : scenario_.objects) add(source);
+    note_models();
     for (const auto& object : scenario_.own_objects) require_name_of_its_own(object);
     for (const auto& object : scenario_.own_objects)
       if (const auto* elements = std::get_if<MeanElements>(&object.motion.model)) {
@@ -137,6 +138,27 @@ class Loader {
       note(source.path + ": " + std::to_string(of_earlier) +
            (of_earlier == 1 ? " element set" : " element sets") +
            " left out: catalogues listed before have the numbers; first " + first);
+  }
+
+  /// Notes what the shapes of models lack, and patterns of the user's that fit no object. Those
+  /// that a model has itself may, unless all do.
+  void note_models() {
+    std::set<const ObjectModel*> noted;
+    std::vector<std::string> stated, all;
+    for (const auto& rule : models_.rules()) {
+      if (noted.insert(rule.model.get()).second)
+        for (const auto& text : rule.model->geometry.notes) note(text);
+      const ObjectModels alone({rule});
+      if (std::ranges::any_of(population_.roster.objects, [&](const ObjectInfo& object) {
+            return alone.of(object.name, object.catalogue_number);
+          }))
+        continue;
+      all.push_back(rule.pattern);
+      if (std::ranges::find(rule.model->names, rule.pattern) == rule.model->names.end())
+        stated.push_back(rule.pattern);
+    }
+    for (const auto& pattern : all.size() == models_.rules().size() ? all : stated)
+      note("models: no object of the catalogues has a name or number like " + pattern);
   }
 
   bool is_own(std::uint32_t number) const {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/least_squares.h"
 #include "core/base/quantile.h"
@@ -16,7 +17,8 @@
 namespace dmise {
 namespace {
 
-constexpr double bin_s = 1.0;  // of means within a track
+constexpr double bin_s = 1.0;               // of means within a track
+constexpr std::size_t least_of_a_half = 3;  // as many as a phase law has numbers
 
 struct Family {
   const char *model, *what, *file, *source;
@@ -27,17 +29,24 @@ struct Family {
 
 constexpr std::array<Family, 3> families{{
     {"starlink-v1.5", "Starlink v1.5 by Pomenis", "pomenis_even.csv",
-     "Fankhauser, Tyson & Askari 2023, AB in V", 0.0, 0.0, Halves::by_time, 0.15, 0.85},
+     "Fankhauser, Tyson & Askari 2023, AB, the band taken as V", 0.0, 0.0, Halves::by_time, 0.15,
+     0.85},
     {"oneweb", "OneWeb by MMT-9", "mmt_oneweb_1200km.csv.gz",
      "MMT-9, 10 Hz, about V; NASA CARA analysis tools", 87.9, 1200e3},
     {"iridium-next", "Iridium NEXT by MMT-9", "mmt_iridium_next_780km.csv.gz",
      "MMT-9, 10 Hz, about V; NASA CARA analysis tools", 86.4, 780e3},
 }};
 
+double mean_of(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double x : values) mean += x / double(values.size());
+  return mean;
+}
+
 double standard_deviation(const std::vector<double>& values) {
   if (values.size() < 2) return 0.0;
-  double mean = 0.0, square = 0.0;
-  for (const double x : values) mean += x / double(values.size());
+  const double mean = mean_of(values);
+  double square = 0.0;
   for (const double x : values) square += (x - mean) * (x - mean);
   return std::sqrt(square / double(values.size() - 1));
 }
@@ -62,7 +71,6 @@ Chosen half_of(const std::vector<ComparedLight>& lights, bool held_out) {
 
 /// What a parabola in phase, fitted to `fitted`, leaves of the magnitudes of `judged`.
 double phase_law_scatter_mag(const Chosen& fitted, const Chosen& judged) {
-  if (fitted.size() < 3) return 0.0;
   std::vector<double> a, b;
   for (const auto* light : fitted) {
     a.insert(a.end(), {1.0, light->phase_rad, light->phase_rad * light->phase_rad});
@@ -85,17 +93,13 @@ double within_tracks_mag(const std::map<std::size_t, Chosen>& tracks,
     for (const auto* light : lights)
       bins[std::int64_t(std::floor(light->time_s / bin_s))].push_back(value(*light));
     std::vector<double> means;
-    for (const auto& [bin, values] : bins) {
-      double sum = 0.0;
-      for (const double x : values) sum += x;
-      means.push_back(sum / double(values.size()));
-    }
+    for (const auto& [bin, values] : bins) means.push_back(mean_of(values));
     if (means.size() >= 3) all.push_back(standard_deviation(means));
   }
   return median_or_zero(all);
 }
 
-BrightnessFigures figures_of(const Chosen& half, const Chosen& other, bool curves) {
+BrightnessFigures figures_of(const Chosen& half, const Chosen& fitted, bool curves) {
   std::vector<double> differences;
   std::map<std::size_t, Chosen> tracks;
   for (const auto* light : half) {
@@ -111,8 +115,9 @@ BrightnessFigures figures_of(const Chosen& half, const Chosen& other, bool curve
   BrightnessFigures f{.lights = half.size(),
                       .tracks = tracks.size(),
                       .median_mag = median_or_zero(differences),
+                      .mean_mag = mean_of(differences),
                       .scatter_mag = standard_deviation(differences),
-                      .phase_law_scatter_mag = phase_law_scatter_mag(other, half),
+                      .phase_law_scatter_mag = phase_law_scatter_mag(fitted, half),
                       .track_scatter_mag = standard_deviation(medians)};
   if (!curves) return f;
   f.within_measured_mag =
@@ -145,10 +150,13 @@ FamilyBrightness compare(const Family& family, const std::string& directory, std
       .what = family.what,
       .source = family.source,
       .split = curves ? "even tracks in order of time are fitted, odd ones are held out"
-                      : "the first half in order of time is fitted, the second is held out",
+                      : "nights up to that of the middle one are fitted, later ones held out",
       .left_out = set.left_out,
+      .worst_rms_m = set.worst_rms_m,
       .target_median_mag = family.target_median_mag,
       .target_scatter_mag = family.target_scatter_mag};
+  if (set.lights.empty()) throw ConfigError(path + ": no measurement is in sunlight");
+  const std::size_t middle_track = set.lights[(set.lights.size() - 1) / 2].track;
   for (std::size_t i = 0; i < set.lights.size(); i += every) {
     const ObservedLight& seen = set.lights[i];
     const Vec<Gcrs> line = seen.observer_m - seen.scene.position_m;
@@ -157,11 +165,15 @@ FamilyBrightness compare(const Family& family, const std::string& directory, std
                         .measured_mag = seen.measured_mag,
                         .range_m = norm(line),
                         .phase_rad = angle_rad(line, seen.scene.sun_m - seen.scene.position_m),
-                        .held_out = curves ? seen.track % 2 == 1 : 2 * i >= set.lights.size()};
+                        .held_out = curves ? seen.track % 2 == 1 : seen.track > middle_track};
     light.predicted_mag = light_of.v_mag(seen, &light.to_sun, &light.to_viewer) + to_system_mag;
     result.lights.push_back(light);
   }
   const Chosen fitted = half_of(result.lights, false), held_out = half_of(result.lights, true);
+  if (std::min(fitted.size(), held_out.size()) < least_of_a_half)
+    throw ConfigError(path + formatted(": too few measurements in sunlight: %zu to fit and %zu to "
+                                       "judge by, of each at least %zu are needed",
+                                       fitted.size(), held_out.size(), least_of_a_half));
   result.fitted = figures_of(fitted, fitted, curves);
   result.held_out = figures_of(held_out, fitted, curves);
   if (result.target_scatter_mag == 0.0)

@@ -19,16 +19,17 @@ struct ComparedLight {
   double difference_mag() const { return measured_mag - predicted_mag; }  // > 0: model too bright
 };
 
-/// How a family's measurements are halved.
-enum class Halves { by_time, by_track };  // first and second half; even and odd tracks
+/// How a family's measurements are halved, never within a track: those up to the track of the
+/// middle one are fitted, or every other track.
+enum class Halves { by_time, by_track };
 
 /// What is measured of one half.
 struct BrightnessFigures {
   std::size_t lights = 0, tracks = 0;
-  double median_mag = 0.0;             // of the differences
-  double scatter_mag = 0.0;            // their standard deviation
-  double phase_law_scatter_mag = 0.0;  // of what a phase law leaves, fitted to the other half
-  double track_scatter_mag = 0.0;      // standard deviation of the tracks' median differences
+  double median_mag = 0.0, mean_mag = 0.0;  // of the differences
+  double scatter_mag = 0.0;                 // their standard deviation
+  double phase_law_scatter_mag = 0.0;       // of what a phase law leaves, fitted to the fitted half
+  double track_scatter_mag = 0.0;           // standard deviation of the tracks' median differences
   // Median over tracks of the standard deviation within them of means over a second.
   double within_measured_mag = 0.0, within_predicted_mag = 0.0, within_difference_mag = 0.0;
 };
@@ -37,6 +38,7 @@ struct FamilyBrightness {
   std::string model, what, source;
   std::string split;  // in words
   std::size_t left_out = 0;
+  double worst_rms_m = 0.0;  // of a pass: stated ranges about its orbit
   std::vector<ComparedLight> lights;
   BrightnessFigures fitted, held_out;
   double target_median_mag = 0.0, target_scatter_mag = 0.0;  // 0: 1.2 times the phase law's
@@ -56,7 +58,7 @@ class ModelLight {
 };
 
 /// Compares every `every`th measurement in `directory` with the shipped models. Throws
-/// `ConfigError` for a file that is not there or cannot be read.
+/// `ConfigError` for a file that is not there, cannot be read or leaves nothing to judge.
 std::vector<FamilyBrightness> compare_brightness(const std::string& directory, std::size_t every);
 
 /// The points as CSV, for a fit of surfaces.

@@ -5,7 +5,8 @@
 Each line of the CSV has the directions of Sun and observer in the body's axes. The fit is of magnitudes, with a loss that forgives outliers; then all
 surfaces are scaled so that the median difference of the fitted half is 0. Shapes are those of launch/models without their own
 shadows, and arrays of OneWeb and Iridium NEXT are held at the least reflectance, which is where the fit drives them. `dmise validate` judges the result,
-with shadows and by the other half.
+with shadows and by the other half. Those of Starlink were fitted to the first 294 rows of the file, which are among the 299 of the fitted half: of all
+299 each number is within a tenth of them.
 """
 import argparse
 import csv

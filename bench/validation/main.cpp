@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -58,7 +59,8 @@ void run_program(std::vector<std::string> words) {
   if (posix_spawnp(&pid, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0)
     throw Error(words[0] + ": can't be started");
   int status = 0;
-  waitpid(pid, &status, 0);
+  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
   if (status != 0) throw Error(words[1] + ": failed");
 }
 
@@ -102,6 +104,7 @@ void print_half(const std::string& name, const BrightnessFigures& f, const Famil
                  json);
   };
   print("_median", f.median_mag, 0.0, 0.0);
+  print("_mean", f.mean_mag, 0.0, 0.0);
   print("_median_off", std::abs(f.median_mag), 0.0, family.target_median_mag);
   print("_scatter", f.scatter_mag, f.phase_law_scatter_mag, family.target_scatter_mag);
   print("_between_tracks", f.track_scatter_mag, 0.0, 0.0);

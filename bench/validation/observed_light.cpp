@@ -5,9 +5,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "bench/validation/pass_orbit.h"
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
@@ -24,6 +26,8 @@ namespace {
 constexpr Site mount_lemmon{.latitude_deg = 32.4434, .longitude_deg = -110.7881, .height_m = 2790};
 constexpr Site mmt_9{.latitude_deg = 43.65, .longitude_deg = 41.43, .height_m = 2030};
 constexpr std::size_t points_of_fit = 15;
+constexpr double least_km = 100.0, most_km = 1e5;  // of heights and ranges
+constexpr double brightest_mag = -10.0, faintest_mag = 25.0;
 
 /// Rows of a CSV with a header; lines that begin with # are comments.
 class Table {
@@ -49,9 +53,11 @@ class Table {
     if (found == columns_.end()) fail(rows_[row].line, "there is no column " + column);
     return rows_[row].fields[found->second];
   }
-  double number(std::size_t row, const std::string& column) const {
+  double number(std::size_t row, const std::string& column, double least, double most) const {
     const auto value = parse_real(text(row, column));
-    if (!value) fail(rows_[row].line, column + ": must be a number" + got(text(row, column)));
+    if (!value || !(*value >= least && *value <= most))
+      fail(rows_[row].line, column + formatted(": must be a number in [%g, %g]", least, most) +
+                                got(text(row, column)));
     return *value;
   }
   Utc time(std::size_t row, const std::string& column) const {
@@ -134,6 +140,7 @@ void add_pass(const std::vector<CurvePoint>& points, const Clock& clock, double 
     else
       set.lights.push_back(light);
   }
+  set.worst_rms_m = std::max(set.worst_rms_m, pass->rms_m);
   ++set.tracks;
 }
 
@@ -145,14 +152,17 @@ ObservedSet read_exposures(const std::string& path) {
   const Clock clock(table.time(0, "observation_time"));
   const Vec<Itrs> site_m = itrs_from_geodetic(mount_lemmon);
   const auto itrs_from_enu = enu_from_itrs(mount_lemmon).inverse();
+  std::vector<std::pair<SimTime, std::size_t>> rows;  // in order of time, which files need not have
+  for (std::size_t i = 0; i < table.size(); ++i)
+    rows.emplace_back(clock.sim_time(table.time(i, "observation_time")), i);
+  std::ranges::sort(rows);
   std::string night;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const SimTime t = clock.sim_time(table.time(i, "observation_time"));
+  for (const auto& [t, i] : rows) {
     const EarthOrientation earth = earth_orientation(clock, t, Nutation::iau2000b);
     const auto gcrs_from_itrs = earth.itrs_from_gcrs(t).inverse();
-    const double height_m = 1e3 * table.number(i, "satellite_height");
-    const double elevation_rad = deg * table.number(i, "satellite_altitude");
-    const double azimuth_rad = deg * table.number(i, "satellite_azimuth");
+    const double height_m = 1e3 * table.number(i, "satellite_height", least_km, most_km);
+    const double elevation_rad = deg * table.number(i, "satellite_altitude", 0.0, 90.0);
+    const double azimuth_rad = deg * table.number(i, "satellite_azimuth", -360.0, 360.0);
     const Vec<Itrs> line = itrs_from_enu * Vec<Enu>{std::sin(azimuth_rad) * std::cos(elevation_rad),
                                                     std::cos(azimuth_rad) * std::cos(elevation_rad),
                                                     std::sin(elevation_rad)};
@@ -166,7 +176,7 @@ ObservedSet read_exposures(const std::string& path) {
     const double speed = std::sqrt(earth_gm_m3_per_s2 / norm(position_m));
     ObservedLight light{
         .track = set.tracks - 1,
-        .measured_mag = table.number(i, "ab_magnitude"),
+        .measured_mag = table.number(i, "ab_magnitude", brightest_mag, faintest_mag),
         .scene = {.time_s = t.seconds(),
                   .position_m = position_m,
                   .velocity_m_per_s = unit(cross(Vec<Gcrs>{0, 0, 1}, position_m)) * speed,
@@ -187,11 +197,12 @@ ObservedSet read_light_curves(const std::string& path, double inclination_rad, d
   const Clock clock(table.time(0, "Date"));
   std::map<std::string, std::vector<CurvePoint>> curves;
   for (std::size_t i = 0; i < table.size(); ++i)
-    curves[table.text(i, "Track")].push_back({.time = clock.sim_time(table.time(i, "Date")),
-                                              .mag = table.number(i, "Mag"),
-                                              .range_m = 1e3 * table.number(i, "Distance"),
-                                              .phase_rad = deg * table.number(i, "Phase"),
-                                              .penumbra = table.number(i, "Penumbra") != 0.0});
+    curves[table.text(i, "Track")].push_back(
+        {.time = clock.sim_time(table.time(i, "Date")),
+         .mag = table.number(i, "Mag", brightest_mag, faintest_mag),
+         .range_m = 1e3 * table.number(i, "Distance", least_km, most_km),
+         .phase_rad = deg * table.number(i, "Phase", 0.0, 180.0),
+         .penumbra = table.number(i, "Penumbra", 0.0, 1.0) != 0.0});
   std::vector<std::vector<CurvePoint>> in_time;
   for (auto& [track, points] : curves) {
     std::ranges::stable_sort(points, {}, &CurvePoint::time);

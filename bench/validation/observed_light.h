@@ -24,10 +24,12 @@ struct ObservedSet {
   std::vector<ObservedLight> lights;
   std::size_t tracks = 0;
   std::size_t left_out = 0;  // lights in penumbra, and of passes whose orbit is not found
+  double worst_rms_m = 0.0;  // of a pass: ranges about its orbit
 };
 
 /// Magnitudes of single exposures with height, elevation and azimuth, as those of Starlink by
-/// Pomenis (AB, Mount Lemmon). A track is a night. Throws `ConfigError` with the line.
+/// Pomenis (AB, Mount Lemmon). A track is a night. A file need not be in order of time. Throws
+/// `ConfigError` with the line.
 ObservedSet read_exposures(const std::string& path);
 
 /// Light curves of MMT-9 with range and phase (V of Vega). A circular orbit of the stated

@@ -15,10 +15,14 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import zlib
 
-import erfa
-import numpy as np
-from sgp4.api import WGS72, Satrec
+try:
+    import erfa
+    import numpy as np
+    from sgp4.api import WGS72, Satrec
+except ImportError as error:
+    sys.exit(f"{sys.executable}: {error}; apt install python3-erfa python3-numpy python3-sgp4")
 
 LIGHT_M_PER_S = 299792458.0
 DAY_S = 86400.0
@@ -30,26 +34,41 @@ PASSES = 2  # of each satellite
 HEIGHT_M = 500.0
 
 
+def lines_of(path):
+    try:
+        with gzip.open(path, "rt") as file:
+            return file.read().splitlines()
+    except (OSError, EOFError, zlib.error) as error:
+        sys.exit(f"{path}: {getattr(error, 'strerror', None) or error}")
+
+
 class Orbit:
     """An SP3: TAI seconds since its first state, ITRS metres."""
 
     def __init__(self, path):
         self.times, self.positions, self.velocities = [], [], []
-        with gzip.open(path, "rt") as file:
-            for line in file:
-                if line.startswith("%c L"):
-                    if line[9:12] != "TAI":
-                        sys.exit(f"{path}: its times must be TAI, got {line[9:12]}")
-                if line.startswith("*"):
-                    y, mo, d, h, mi, s = line[1:].split()
-                    self.times.append(erfa.dtf2d("TAI", int(y), int(mo), int(d), int(h), int(mi), float(s)))
-                elif line.startswith("P"):
-                    self.positions.append([1e3 * float(x) for x in line[4:46].split()])
-                elif line.startswith("V"):
-                    self.velocities.append([0.1 * float(x) for x in line[4:46].split()])
+        for number, line in enumerate(lines_of(path), 1):
+            try:
+                self.take(line)
+            except ValueError as error:
+                sys.exit(f"{path}:{number}: {error}")
+        if len(self.times) < 500 or not len(self.times) == len(self.positions) == len(self.velocities):
+            sys.exit(f"{path}: must have 500 states with velocities or more, got {len(self.times)} times, {len(self.positions)} positions, "
+                     f"{len(self.velocities)} velocities")
         self.start = self.times[0]
         self.seconds = np.array([DAY_S * ((a - self.start[0]) + (b - self.start[1])) for a, b in self.times])
         self.positions, self.velocities = np.array(self.positions), np.array(self.velocities)
+
+    def take(self, line):
+        if line.startswith("%c L") and line[9:12] != "TAI":
+            raise ValueError(f"times must be TAI, got {line[9:12]}")
+        if line.startswith("*"):
+            y, mo, d, h, mi, s = line[1:].split()
+            self.times.append(erfa.dtf2d("TAI", int(y), int(mo), int(d), int(h), int(mi), float(s)))
+        elif line.startswith("P"):
+            self.positions.append([1e3 * float(x) for x in line[4:46].split()])
+        elif line.startswith("V"):
+            self.velocities.append([0.1 * float(x) for x in line[4:46].split()])
 
     def at(self, seconds):
         """ITRS [m] by the ten nearest states."""
@@ -135,11 +154,13 @@ def utc_text(tai):
 def element_set(data, satellite, tai):
     """The element set of the nearest epoch."""
     year_day = []
-    lines = gzip.open(data / f"{SATELLITES[satellite]}.tle.gz", "rt").read().splitlines()
+    lines = lines_of(data / f"{SATELLITES[satellite]}.tle.gz")
     for one, two in zip(lines[::2], lines[1::2]):
         year = int(one[18:20])
         first = erfa.cal2jd(year + (1900 if year > 56 else 2000), 1, 1)
         year_day.append((abs(first[0] + first[1] + float(one[20:32]) - 1 - tai[0] - tai[1]), one, two))
+    if not year_day:
+        sys.exit(f"{data}/{SATELLITES[satellite]}.tle.gz: has no element set")
     return min(year_day)[1:]
 
 
@@ -170,13 +191,14 @@ def difference(detection, orbit, site):
     """(east and north [arcsec] of the SP3, covariance [arcsec2]), with the range known as docs/wire.md tells."""
     tai = tai_of(detection["time_utc"])
     latitude, longitude = np.radians(site)
-    up = itrs_from_gcrs(tai).T @ [np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]
+    gcrs_from_itrs = itrs_from_gcrs(tai).T
+    up = gcrs_from_itrs @ [np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]
     ours = unit(detection["corrected_ra_deg"], detection["corrected_dec_deg"])
     east = unit(detection["corrected_ra_deg"] + 90.0, 0.0)
     north = np.cross(ours, east)
     vertical = up - ours * (ours @ up)
     vertical /= np.linalg.norm(vertical)
-    start = np.array(detection["sensor_position_gcrs_m"]) + detection["refraction_offset_gcrs_m"]
+    start = gcrs_from_itrs @ site_itrs(site) + detection["refraction_offset_gcrs_m"]
     lowered = ours - vertical * detection["refraction_parallax_arcsec"] * ARCSEC
     off = (lowered - predicted(orbit, tai, start)) / ARCSEC
     ee, en, nn = detection["covariance_arcsec2"]
@@ -256,7 +278,10 @@ def compare(options):
     with tempfile.TemporaryDirectory(prefix="dmise-validate-") as scratch:
         for name, shown in SATELLITES.items():
             orbit = Orbit(options.data / f"orbits/{name}.sp3.gz")
-            for n, (site, k) in enumerate(passes(orbit)):
+            chosen = passes(orbit)
+            if len(chosen) < PASSES:
+                sys.exit(f"{shown}: {len(chosen)} of {PASSES} passes are high, sunlit and in the dark in {name}.sp3.gz")
+            for n, (site, k) in enumerate(chosen):
                 folder = pathlib.Path(scratch) / f"{name}-{n}"
                 folder.mkdir()
                 (folder / "target.oem").write_text(orbit.oem(shown, k - 12, k + 12))

@@ -28,19 +28,21 @@ constexpr const char* about_brightness = R"(
 A model is a shape with effective surfaces and an attitude law (`dmise list models`, [objects](models/objects.md#models-of-families)). The light of
 its facets for the Sun, the observer and the attitude of each measurement is compared with the magnitude that was measured. Single
 exposures state height, elevation and azimuth. Light curves state range and phase, and the circular orbit of the family's
-inclination that agrees with both (to 0.5 km of range) says where the satellite was. AB magnitudes in V are compared with the AB magnitude
-of sunlight of the predicted V (the same photons over 3631 Jy); MMT-9's, which are of no filter and calibrated to V, with V itself. All are above the
-atmosphere.
+inclination that agrees with both says where the satellite was. The exposures are stated as AB magnitudes, of no band;
+V is assumed, and they are compared with the AB magnitude of sunlight of the predicted V (the same photons over 3631 Jy). MMT-9's, which are
+of no filter and about V, are compared with V itself. All are taken as above the atmosphere.
 
-- **median**: measured less predicted; above 0 the model is too bright.
-- **scatter**: the standard deviation of that. Satellites of a family differ, so no model of the family brings it to 0.
+- **median**, **mean**: measured less predicted; above 0 the model is too bright. A mean below the median is of tracks that are much
+  brighter than the others: no model of the family has them.
+- **scatter**: the standard deviation about the mean. Satellites of a family differ, so no model of the family brings it to 0.
 - **of a phase law**: the scatter that a parabola in phase leaves, fitted to the fitted half alone: what is known without a shape.
 - **between tracks**: the standard deviation of the tracks' medians (a track of single exposures is a night).
 - **within tracks**: the standard deviation of means over a second about their track's mean, the median over tracks. The models are
   smoother than the satellites: boxes lack the small parts that glint and fade within a minute.
 
-This does not show: colours (all is in V), glints shorter than a second, light below 20 deg of elevation, phases and seasons that
-were not measured, or satellites with visors.
+This does not show: satellites or nights that the fit has not seen (many have tracks in both halves of the light curves), colours (all
+is in V), glints shorter than a second, light below 20 deg of elevation, phases and seasons that were not measured, or satellites with
+visors.
 )";
 
 ChartAxis axis(const std::string& label, double least, double most, double step) {
@@ -51,9 +53,9 @@ ChartAxis axis(const std::string& label, double least, double most, double step)
 }
 
 std::string row(const char* half, const BrightnessFigures& f, bool curves) {
-  std::string text =
-      formatted("| %s | %zu | %zu | %+.2f | %.2f | %.2f | %.2f |", half, f.lights, f.tracks,
-                f.median_mag, f.scatter_mag, f.phase_law_scatter_mag, f.track_scatter_mag);
+  std::string text = formatted("| %s | %zu | %zu | %+.2f | %+.2f | %.2f | %.2f | %.2f |", half,
+                               f.lights, f.tracks, f.median_mag, f.mean_mag, f.scatter_mag,
+                               f.phase_law_scatter_mag, f.track_scatter_mag);
   return text + (curves
                      ? formatted(" %.2f, %.2f |\n", f.within_measured_mag, f.within_predicted_mag)
                      : std::string(" |\n"));
@@ -66,15 +68,19 @@ std::string section(const FamilyBrightness& family, const std::string& pictures)
   if (family.left_out > 0)
     text += counted(family.left_out, "measurement") + " in penumbra " +
             (family.left_out == 1 ? "is" : "are") + " left out. ";
+  if (curves)
+    text += formatted("The orbits agree with the ranges to %.2f km rms in the worst track. ",
+                      1e-3 * family.worst_rms_m);
   text += formatted(
       "Wanted of the held-out half: a median within %.2f mag, a scatter of at most "
       "%.2f mag%s.\n\n",
       family.target_median_mag, family.target_scatter_mag,
       curves ? ", 1.2 times the phase law's" : "");
   text +=
-      "| half | points | tracks | median, mag | scatter, mag | of a phase law, mag | between "
+      "| half | points | tracks | median, mag | mean, mag | scatter, mag | of a phase law, mag | "
+      "between "
       "tracks, "
-      "mag | within tracks: measured, model, mag |\n|---|---|---|---|---|---|---|---|\n";
+      "mag | within tracks: measured, model, mag |\n|---|---|---|---|---|---|---|---|---|\n";
   text += row("fitted", family.fitted, curves) + row("held out", family.held_out, curves);
   return text + "\n![Measured less predicted magnitude by phase](" + pictures + "/" + family.model +
          ".svg)\n";
@@ -86,7 +92,7 @@ Chart difference_chart(const FamilyBrightness& family) {
   Chart chart{.title = family.what,
               .subtitle =
                   "held-out half, measured less predicted magnitude; above 0 the model is "
-                  "too bright"};
+                  "too bright; points beyond 2.5 mag are not drawn"};
   ChartSeries points{.label = "measurements", .colour = grey},
       middle{.label = "median", .colour = blue}, bounds{.label = "68 %", .colour = orange};
   std::map<int, std::vector<double>> bins;

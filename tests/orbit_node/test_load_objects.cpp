@@ -70,6 +70,19 @@ TEST_F(ObjectPopulationTest, AModelTurnsTheObjectsThatItNames) {
       population("  - {catalogue: goes.tle, models: {\"NOAA *\": oneweb}}\n").attitudes.empty());
 }
 
+// Patterns heed case. Those of a shipped model may fit nothing, unless all do.
+TEST_F(ObjectPopulationTest, APatternThatFitsNoObjectIsNoted) {
+  const auto notes = [&](const std::string& models) {
+    return population("  - {catalogue: goes.tle, models: " + models + "}\n").notes;
+  };
+  EXPECT_THAT(notes("{\"GOES *\": oneweb}"), testing::IsEmpty());
+  EXPECT_THAT(notes("{\"goes *\": oneweb, \"29155\": oneweb}"),
+              testing::ElementsAre("models: no object of the catalogues has a name or number like "
+                                   "goes *"));
+  EXPECT_THAT(notes("{\"GOES *\": oneweb, \"ONEWEB-*\": oneweb}"), testing::IsEmpty());
+  EXPECT_THAT(notes("shipped"), testing::Contains(HasSubstr("like STARLINK-*")));
+}
+
 TEST_F(ObjectPopulationTest, AnObjectOfTwoCataloguesIsTheFirstOnesAndANoteSaysSo) {
   write("newer.tle",
         "NEWER\n"
