@@ -87,12 +87,11 @@ void add_catalogues(nb::module_& module) {
                    })
       .def("states", [](const Catalogue& catalogue, std::vector<std::string> times,
                         const std::string& axes, std::string earth_orientation, int threads) {
-        if (threads < 1 || threads > 1024)
-          throw ConfigError("threads: must be in 1..1024, got " + std::to_string(threads));
         CatalogueStates states = interruptible<CatalogueStates>(
             [elements = catalogue.file.elements, times = std::move(times), axes = axes_named(axes),
-             earth_orientation = std::move(earth_orientation),
-             threads] { return states_at(elements, times, axes, earth_orientation, threads); });
+             earth_orientation = std::move(earth_orientation), threads = checked_threads(threads)] {
+              return states_at(elements, times, axes, earth_orientation, threads);
+            });
         const std::size_t n = states.objects, m = states.times;
         return nb::make_tuple(array_of(std::move(states.position_m), {n, m, 3}),
                               array_of(std::move(states.velocity_m_per_s), {n, m, 3}),

@@ -1,6 +1,8 @@
 #pragma once
 #include <nanobind/nanobind.h>
 
+#include <string>
+
 #include "core/base/error.h"
 
 // The parts of the module `dmise._engine`, which clients/python wraps. What is JSON here is as the
@@ -21,6 +23,13 @@ auto of_scenario(const F& f) {
   } catch (const ConfigError& error) {
     throw ScenarioFault(error.what());
   }
+}
+
+/// Throws `ConfigError` for what is no number of threads.
+inline int checked_threads(int threads) {
+  if (threads < 1 || threads > 1024)
+    throw ConfigError("threads: must be in 1..1024, got " + std::to_string(threads));
+  return threads;
 }
 
 void add_simulation(nanobind::module_& module);

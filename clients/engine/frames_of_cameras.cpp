@@ -32,13 +32,11 @@ struct FrameFile {
 
 FrameFile file_of(const nb::bytes& bytes, std::string name, std::string catalogue, bool blind,
                   int threads) {
-  if (threads < 1 || threads > 1024)
-    throw ConfigError("threads: must be in 1..1024, got " + std::to_string(threads));
   return {.bytes = std::string(bytes.c_str(), bytes.size()),
           .name = std::move(name),
           .catalogue = std::move(catalogue),
           .blind = blind,
-          .threads = threads};
+          .threads = checked_threads(threads)};
 }
 
 /// The only frame of a file.

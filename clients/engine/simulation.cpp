@@ -148,9 +148,8 @@ class Simulation {
 
   std::unique_ptr<Stream> frames(const std::vector<std::string>& sensors, int threads,
                                  bool layers) {
-    StreamOptions options{.sensors = sensors, .threads = threads, .layers = layers};
-    if (threads < 1 || threads > 1024)
-      throw ConfigError("threads: must be in 1..1024, got " + std::to_string(threads));
+    StreamOptions options{
+        .sensors = sensors, .threads = checked_threads(threads), .layers = layers};
     if (sensors.empty())
       for (const auto& sensor : scenario_->sensors) options.sensors.push_back(sensor.name);
     for (const auto& sensor : sensors) sensor_named(*scenario_, sensor);

@@ -1,5 +1,7 @@
 #include "core/base/detached_work.h"
 
+#include <pthread.h>
+
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -20,9 +22,21 @@ struct RunningWork {
   }
 };
 
+RunningWork& running_work();
+
+/// A forked process begins with none: it has only the thread that forked.
+RunningWork* begun_anew_in_forks() {
+  ::pthread_atfork([] { running_work().mutex.lock(); }, [] { running_work().mutex.unlock(); },
+                   [] {
+                     running_work().count = 0;
+                     running_work().mutex.unlock();
+                   });
+  return new RunningWork;
+}
+
 /// Never destroyed: work may outlive the program's other objects.
 RunningWork& running_work() {
-  static auto* running = new RunningWork;
+  static auto* running = begun_anew_in_forks();
   return *running;
 }
 

@@ -83,7 +83,10 @@ void Threads::for_ranges(std::size_t items, std::size_t grain,
   const auto drain = [&] {
     for (std::size_t i = next++; i < ranges; i = next++) {
       try {
-        if (cancelled && *cancelled) throw Cancelled();
+        if (cancelled && *cancelled) {
+          next = ranges;
+          throw Cancelled();
+        }
         work(i * grain, std::min(items, (i + 1) * grain));
       } catch (...) {
         std::lock_guard lock(error_mutex);

@@ -7,7 +7,7 @@
 namespace dmise {
 
 /// Loads the catalogue of stars of that name, or a file, through the user's cache; null for "none",
-/// the default for "". Throws `ConfigError` that begins with `option`.
+/// the default for "". Throws `ConfigError`, which begins with `option` if a named one is missing.
 std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name,
                                                    const std::string& option = "--catalogue");
 

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Makes the wheel of the Python package: the engine, the programs, their libraries, cameras, sites and catalogues.
 
-    wheel.py TREE OUT    of a built tree (build/release) that has target dmise_engine; run by ./dmise wheel, in build/engine-venv
+    wheel.py TREE OUT    of a built tree (build/release) that has target dmise_engine
+
+Run by ./dmise wheel, in build/engine-venv.
 """
 import base64
 import hashlib
@@ -46,7 +48,7 @@ def engine_of(package_in_tree):
 
 
 def libraries_of(files):
-    """Packages of Debian that the wheel's libraries come from, by the libraries' names."""
+    """Packages of Debian that the wheel's libraries come from, by the names of the libraries' files."""
     paths = set()
     for file in files:
         for line in subprocess.run(["ldd", file], capture_output=True, text=True).stdout.splitlines():
@@ -72,8 +74,7 @@ def write_licences(info, bundled, owners):
     lines = ["Libraries in this wheel, from Debian, and where their licences are. FFTW is under the GPL-2.0-or-later: with it,",
              "this wheel as a whole is under the GPL-3.0-or-later. The source of DMISE stays under the Apache-2.0.", ""]
     for library in sorted(bundled):
-        stem = re.sub(r"-[0-9a-f]{8}(?=\.)", "", library)
-        package = next((owner for name, owner in owners.items() if name.startswith(stem.split(".so")[0])), None)
+        package = owners.get(re.sub(r"-[0-9a-f]{8}(?=\.)", "", library))
         text = pathlib.Path(f"/usr/share/doc/{package}/copyright")
         if package is None or not text.exists():
             raise SystemExit(f"wheel: {library}: no licence was found for it")

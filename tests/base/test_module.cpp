@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/own_file.h"
 
 namespace dmise {
 namespace {
@@ -29,6 +31,11 @@ TEST(Module, OneThatIsNotThereIsNamed) {
 // zlib is a shared object without our entry.
 TEST(Module, AnotherLibraryIsNoModule) {
   EXPECT_EQ(complaint("libz.so.1", "dmise_make_test"), "libz.so.1: is not a test module");
+}
+
+// In a module of Python it is the module: tests/clients/engine.py.
+TEST(OwnFile, OfAProgramIsTheProgram) {
+  EXPECT_EQ(own_file(), std::filesystem::canonical("/proc/self/exe"));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "core/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -63,6 +65,36 @@ TEST(Threads, CancelledLoopsOfAThreadEndAndOthersGoOn) {
   }
   threads.for_ranges(10, 1, [&](std::size_t, std::size_t) { ++worked; });
   EXPECT_GE(worked, 11);
+}
+
+// A billion ranges that throw one after the other would take an hour.
+TEST(Threads, ACancelledLoopSkipsItsOtherRanges) {
+  const std::atomic<bool> asked = true;
+  CancellationScope scope(asked);
+  int caught = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 100; ++i) try {
+      Threads(1).for_ranges(1'000'000'000, 1, [](std::size_t, std::size_t) {});
+    } catch (const Cancelled&) {
+      ++caught;
+    }
+  EXPECT_EQ(caught, 100);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+// A fork has none of the threads.
+TEST(DetachedWork, IsNotWaitedForInAFork) {
+  std::atomic<bool> go = false;
+  start_detached([&] {
+    while (!go) std::this_thread::yield();
+  });
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(wait_for_detached(std::chrono::milliseconds(0)) ? 0 : 1);
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  go = true;
+  EXPECT_TRUE(wait_for_detached(std::chrono::seconds(100)));
 }
 
 TEST(DetachedWork, IsWaitedFor) {

@@ -2,6 +2,7 @@
 
     engine.py DMISE
 """
+import ast
 import gc
 import json
 import os
@@ -93,7 +94,8 @@ class Frames(unittest.TestCase):
 
     def test_frames_of_all_sensors_and_a_sensor_alone_are_the_same(self):
         together = [f.to_fits() for f in dmise.Simulation(self.path, seed=3).frames() if f.sensor == "east"]
-        self.assertEqual(together, [f.to_fits() for f in dmise.Simulation(self.path, seed=3).frames("east")])
+        for sensors in (["east"], ["east", "east"]):
+            self.assertEqual(together, [f.to_fits() for f in dmise.Simulation(self.path, seed=3).frames(*sensors)])
 
     def test_layers_do_not_change_the_frame(self):
         plain = [f.to_fits() for f in dmise.Simulation(self.path, seed=3).frames("west")]
@@ -185,6 +187,9 @@ class Frames(unittest.TestCase):
             self.assertEqual(list(found["id"]), list(frame.detections["id"]))
             np.testing.assert_array_equal(found["x_px"], frame.detections["x_px"])
             self.assertEqual(found.report.psf_fwhm_px, frame.report.psf_fwhm_px)
+            self.assertEqual(found[:1].report, found.report)
+            stars = ROOT / "launch/catalogues/stars.dat.gz"
+            np.testing.assert_array_equal(dmise.detect(frame, catalogue=stars)["x_px"], found["x_px"])
 
     def test_detect_and_solve_take_any_image(self):
         frame = next(dmise.Simulation(SCENARIO).frames("east"))
@@ -242,10 +247,26 @@ class Frames(unittest.TestCase):
     def test_check_is_the_commands(self):
         text = subprocess.run([DMISE, "check", self.path, "--json"], check=True, capture_output=True, text=True).stdout
         self.assertEqual(dmise.check(self.path), json.loads(text))
-        ours = dmise.check(SCENARIO)
-        self.assertEqual(ours["sensors"], json.loads(text)["sensors"])
+        self.assertEqual(dmise.check(SCENARIO), {**json.loads(text), "scenario": "scenario"})
         with self.assertRaisesRegex(dmise.ScenarioError, "^scenario:2:16: simulation.start: is missing"):
             dmise.check({"simulation": {}})
+
+    def test_survey_is_the_command(self):
+        with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+            text = subprocess.run([DMISE, "survey", self.path, "--json", "--out", directory, "--shells", "600,900"],
+                                  check=True, capture_output=True, text=True).stdout
+        self.assertEqual(dmise.survey(self.path, shells=[600, 900]), json.loads(text))
+        self.assertEqual(dmise.survey(SCENARIO, shells=[600, 900]), {**json.loads(text), "scenario": "scenario"})
+
+    def test_tradeoff_is_the_command(self):
+        small = SCENARIO.replace("columns: 160, rows: 120", "columns: 48, rows: 32").replace(
+            "catalogue: demo", "catalogue: demo, only: [GOES 13, GOES 14]")
+        with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+            found = dmise.tradeoff(small, repeats=1, sensor="east", out=directory)
+            written = json.loads((pathlib.Path(directory) / "tradeoff.json").read_text())
+        self.assertEqual(found, written)
+        self.assertEqual(found["digest"], dmise.Simulation(small).digest)
+        self.assertTrue({("sky", "off"), ("budget", "draft")} <= {(row["effect"], row["level"]) for row in found["rows"]})
 
     def test_visible_and_score_are_the_commands(self):
         passes = dmise.visible(self.path)
@@ -359,6 +380,14 @@ class Catalogues(unittest.TestCase):
                 self.assertEqual((int(number), int(code)), (states.numbers[i], states.codes[i, 0]))
                 np.testing.assert_array_equal(np.array(state[:3], float), states.positions_m[i, 0] / 1e3)
 
+    def test_times_are_of_any_unit_and_byte_order(self):
+        """A time beyond 2262 has no nanoseconds of 64 bits."""
+        for time_, text in ((np.datetime64("2300-01-01"), "2300-01-01T00:00:00Z"), (np.datetime64("2018-01"), "2018-01-01T00:00:00Z"),
+                            (np.array("2018-01-01T00:00:00.5", ">M8[ms]"), "2018-01-01T00:00:00.5Z")):
+            ours, theirs = (dmise.propagate(ROOT / "launch/catalogues/demo.tle", t, axes="teme") for t in (time_, text))
+            np.testing.assert_array_equal(ours.codes, theirs.codes)
+            np.testing.assert_array_equal(ours.positions_m, theirs.positions_m)
+
     def test_bad_input(self):
         for what, times, axes, reason in ((self.TLE, "2000-13-01", "gcrs", "2000-13-01"), (self.TLE, "2001-01-01", "xyz", "axes"),
                                           ("a\nb\n", "2001-01-01", "gcrs", "catalogue"), (self.TLE, [5], "gcrs", "times"),
@@ -376,6 +405,15 @@ class Package(unittest.TestCase):
                                          "never = sim.frames('east'); print(next(frames).number)"), ["1"])
         self.assertLess(time.monotonic() - begin, 30.0)
 
+    def test_a_forked_process_may_end_in_the_middle_of_an_iteration(self):
+        """Neither the parent's threads are waited for nor is its own left running."""
+        begin = time.monotonic()
+        self.assertEqual(self.run_python(
+            f"import dmise, os; sim = dmise.Simulation({SCENARIO!r}); frames = sim.frames('west'); next(frames)\n"
+            "if os.fork() == 0:\n    mine = sim.frames('east'); next(mine)\n"
+            "else:\n    print(os.waitstatus_to_exitcode(os.wait()[1]))"), ["0"])
+        self.assertLess(time.monotonic() - begin, 30.0)
+
     def run_python(self, code):
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
                               env={**os.environ, "PYTHONPATH": str(ROOT / "build/python")}).stdout.split()
@@ -391,6 +429,11 @@ class Package(unittest.TestCase):
     def test_simulating_needs_no_wire(self):
         self.assertEqual(self.run_python("import sys, dmise; dmise.Simulation, dmise.detect, dmise.check;"
                                          "print(*[m for m in ('zmq', 'google.protobuf') if m in sys.modules])"), [])
+
+    def test_type_checkers_see_the_same_names(self):
+        stub = ast.parse(pathlib.Path(dmise.__file__).with_suffix(".pyi").read_text())
+        names = {(name.asname, line.module) for line in stub.body if isinstance(line, ast.ImportFrom) for name in line.names}
+        self.assertEqual(names, {*dmise._MODULE_OF.items(), *((name, None) for name in dmise._MODULES)})
 
     def test_all_names_are_there(self):
         for name in dmise.__all__:

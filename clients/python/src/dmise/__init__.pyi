@@ -9,15 +9,16 @@ from .node import Node as Node, Tick as Tick
 from .orbit_fit import Orbit as Orbit, Triangulated as Triangulated, fit_orbit as fit_orbit, triangulate as triangulate
 from .own_detector import Detector as Detector, Found as Found, SensorFrame as SensorFrame, detector as detector
 from .own_node import Actor as Actor, World as World, actor as actor, serve as serve
-from .own_sensor import Exposure as Exposure, Observer as Observer, Sighting as Sighting, Sightings as Sightings, sensor as sensor
+from .own_sensor import Exposure as Exposure, Observer as Observer, Sighting as Sighting, Sightings as Sightings
+from .own_sensor import sensor as sensor
 from .own_states import State as State
-from .own_tracker import Point as Point, SearchedFrame as SearchedFrame, Sensor as Sensor, Tracker as Tracker, Tracks as Tracks
-from .own_tracker import tracker as tracker
+from .own_tracker import Point as Point, SearchedFrame as SearchedFrame, Sensor as Sensor, Tracker as Tracker
+from .own_tracker import Tracks as Tracks, tracker as tracker
 from .propagation import CatalogueStates as CatalogueStates, propagate as propagate
 from .recorder import Recorded as Recorded, record as record
 from .recording import Recording as Recording, open_recording as open_recording
-from .records import ArrayLike as ArrayLike, Detection as Detection, FrameReport as FrameReport, Record as Record, Task as Task
-from .records import Track as Track, Truth as Truth, Wcs as Wcs, WcsRefraction as WcsRefraction
+from .records import ArrayLike as ArrayLike, Detection as Detection, FrameReport as FrameReport, Record as Record
+from .records import Task as Task, Track as Track, Truth as Truth, Wcs as Wcs, WcsRefraction as WcsRefraction
 from .replayer import Replay as Replay
 from .runs import Run as Run, open_run as open_run
 from .sight import LineOfSight as LineOfSight, line_of_sight as line_of_sight

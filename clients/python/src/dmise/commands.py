@@ -52,7 +52,8 @@ def tradeoff(scenario: Scenario, **options: Any) -> dict[str, Any]:
 
 def score(run: str | os.PathLike[str] | None = None, **options: Any) -> dict[str, Any]:
     """Compares detections with truth, of the directory of a run, or with `frames` and `truth` of any FITS frames."""
-    found: dict[str, Any] = json.loads(_run("score", [] if run is None else [os.fspath(run)], {"json": True, **options}))
+    arguments = [] if run is None else [os.fspath(run)]
+    found: dict[str, Any] = json.loads(_run("score", arguments, {"json": True, **options}))
     return found
 
 
@@ -97,15 +98,17 @@ def _file_of(scenario: Scenario) -> Iterator[str]:
 
 def _run(command: str, arguments: list[str], options: dict[str, Any]) -> str:
     words = [*arguments, *(word for name, value in options.items() for word in _words_of(name, value))]
-    done = subprocess.run([program(), command, *words], capture_output=True, text=True, errors="replace", close_fds=False,
-                          stdin=subprocess.DEVNULL)
-    if done.returncode == 0:
-        return done.stdout
-    reason = (done.stderr.splitlines() or [f"dmise {command} ended with {done.returncode}"])[-1].removeprefix("dmise: ")
+    done = subprocess.run([program(), command, *words], capture_output=True, text=True, errors="replace",
+                          close_fds=False, stdin=subprocess.DEVNULL)
+    said = done.stdout
+    if done.returncode != 0:
+        said = (done.stderr.splitlines() or [f"dmise {command} ended with {done.returncode}"])[-1].removeprefix("dmise: ")
     for path in arguments:
         if path.startswith("/proc/"):  # a scenario in memory
-            reason = reason.replace(path, "scenario")
-    raise (ScenarioError if done.returncode == _INVALID_INPUT else EngineError)(reason)
+            said = said.replace(path, "scenario")
+    if done.returncode != 0:
+        raise (ScenarioError if done.returncode == _INVALID_INPUT else EngineError)(said)
+    return said
 
 
 def _words_of(name: str, value: Any) -> list[str]:

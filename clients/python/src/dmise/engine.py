@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import atexit
-import os
 import weakref
 from typing import Any
 
@@ -14,13 +13,10 @@ except ImportError as missing:
 
 core: Any = _engine
 streams: weakref.WeakSet[Any] = weakref.WeakSet()  # of frames, whose threads wait until they are asked
-_process = os.getpid()
 
 
 def _end() -> None:
     """What the engine still does in this process ends before its code does."""
-    if os.getpid() != _process:
-        return
     for stream in streams:
         stream.stop()
     core.wait_for_detached(60.0)

@@ -33,16 +33,16 @@ class CatalogueStates:
 
 
 @overload
-def propagate(what: str | os.PathLike[str], times: Any, *, axes: str = ..., earth_orientation: str | os.PathLike[str] = ...,
-              threads: int = ...) -> CatalogueStates: ...
+def propagate(what: str | os.PathLike[str], times: Any, *, axes: str = ...,
+              earth_orientation: str | os.PathLike[str] = ..., threads: int = ...) -> CatalogueStates: ...
 
 
 @overload
 def propagate(what: Floats, times: float, pole: Floats) -> Floats: ...
 
 
-def propagate(what: Any, times: Any, pole: Any = None, *, axes: str = "gcrs", earth_orientation: str | os.PathLike[str] = "",
-              threads: int = 1) -> Any:
+def propagate(what: Any, times: Any, pole: Any = None, *, axes: str = "gcrs",
+              earth_orientation: str | os.PathLike[str] = "", threads: int = 1) -> Any:
     """States of the objects of a catalogue at times, in UTC, by SGP4.
 
     what               path or text of element sets: TLE, OMM, gpredict
@@ -50,7 +50,8 @@ def propagate(what: Any, times: Any, pole: Any = None, *, axes: str = "gcrs", ea
     axes               gcrs, itrs (velocities relative to the turning Earth) or teme
     earth_orientation  an IERS finals file; without it UT1 equals UTC and there is no polar motion
 
-    Of states, 6 x n, an interval [s] and the Earth's pole it gives the states after the interval: `dmise.dynamics.propagate`.
+    Of states, 6 x n, an interval [s] and the Earth's pole it gives the states after the interval:
+    `dmise.dynamics.propagate`.
     """
     if not isinstance(what, (str, os.PathLike)):
         return dynamics.propagate(what, times, pole)
@@ -72,7 +73,8 @@ def _texts_of(times: Any) -> list[str]:
     if isinstance(times, np.ndarray) and times.dtype.kind == "M":
         if np.isnat(times).any():
             raise InputError("times: must be times, got NaT")
-        return [str(text) for text in np.datetime_as_string(times.astype("datetime64[ns]").ravel())]
+        native = times.ravel().astype(times.dtype.newbyteorder("="))  # which datetime_as_string needs
+        return [str(text) for text in np.datetime_as_string(native, unit="ns", casting="unsafe")]
     if not isinstance(times, Iterable):
         raise InputError(f"times: must be datetimes, datetime64 or texts, got {type(times).__name__}")
     return [_text_of(time) for time in times]

@@ -83,7 +83,7 @@ class Simulation:
         threads   that compute; the frames do not depend on them
         layers    keeps the expected light of stars, objects and sky, and masks of objects, which takes longer
         """
-        stream = self._core.frames([*sensors], threads, layers)
+        stream = self._core.frames([*dict.fromkeys(sensors)], threads, layers)
         streams.add(stream)
         return self._iterate(stream)
 
@@ -153,14 +153,15 @@ class SimulatedFrame:
 
     @functools.cached_property
     def plan(self) -> dict[str, Any]:
-        """The frame's plan of effects as in run.json: budget, error, and each effect with its level; {} of one without."""
+        """The frame's plan of effects as in run.json: budget, error, each effect with its level; {} of one without."""
         plan: dict[str, Any] = json.loads(self._made.plan())
         return plan
 
     def layers(self, *names: str) -> Any:
-        """Expected electrons, rows x columns float32: of "stars", "objects" or "sky"; of several a list. Needs `layers=True`.
+        """Expected electrons, rows x columns float32: of "stars", "objects" or "sky"; of several a list.
 
-        The sky holds Sun, Moon and Earth as well. Their sum is what the exposure expects, before the detector.
+        They need `layers=True`. The sky holds Sun, Moon and Earth as well. Their sum is what the exposure expects,
+        before the detector.
         """
         if unknown := [name for name in names if name not in LAYERS]:
             raise InputError(f"layers: must be of {', '.join(LAYERS)}, got {unknown[0]!r}")

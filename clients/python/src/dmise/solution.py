@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import os
 import types
 import warnings
 from collections.abc import Mapping
@@ -24,8 +25,14 @@ class Detections(Table):
     missing: list[str]
     assumed: list[str]
 
+    def __array_finalize__(self, whole: Any) -> None:
+        """Rows that are chosen are of the same frame."""
+        if isinstance(whole, Detections):
+            vars(self).update(vars(whole))
 
-def detect(image: Any, header: Any = None, *, catalogue: str = "kstars", blind: bool = False, threads: int = 1) -> Detections:
+
+def detect(image: Any, header: Any = None, *, catalogue: str | os.PathLike[str] = "kstars", blind: bool = False,
+           threads: int = 1) -> Detections:
     """What is no star in a frame, as `dmise detect` finds it.
 
     image      rows x columns of numbers, NaN where a pixel has no value; or a `SimulatedFrame`, without `header`
@@ -33,7 +40,8 @@ def detect(image: Any, header: Any = None, *, catalogue: str = "kstars", blind: 
     catalogue  of stars: kstars, tycho2, a file, or none
     blind      finds where the frame points by its stars alone
     """
-    lines, report, missing, assumed = core.detect(_content(image, header), "image", catalogue, blind, threads)
+    content = _content(image, header)
+    lines, report, missing, assumed = core.detect(content, "image", os.fspath(catalogue), blind, threads)
     found = table_of([record_of_line(json.loads(line), Detection, None) for line in lines], Detection).view(Detections)
     found.report = record_of_line(json.loads(report), FrameReport, None)
     found.missing, found.assumed = missing, assumed
@@ -60,12 +68,14 @@ class Solution:
             return WCS(fits.Header.fromstring("".join(self.cards)))
 
 
-def solve(image: Any, header: Any = None, *, catalogue: str = "kstars", blind: bool = False, threads: int = 1) -> Solution:
-    """Where a frame points, its distortion and zero point by its stars, as `dmise solve` finds it. Arguments as of `detect`.
+def solve(image: Any, header: Any = None, *, catalogue: str | os.PathLike[str] = "kstars", blind: bool = False,
+          threads: int = 1) -> Solution:
+    """Where a frame points, its distortion and zero point by its stars, as `dmise solve` finds it.
 
-    Raises `EngineError` if there is no solution.
+    Arguments are as of `detect`. Raises `EngineError` if there is no solution.
     """
-    solution, cards, missing, assumed = core.solve(_content(image, header), "image", catalogue, blind, threads)
+    content = _content(image, header)
+    solution, cards, missing, assumed = core.solve(content, "image", os.fspath(catalogue), blind, threads)
     return Solution(json.loads(solution), types.MappingProxyType(values_of(cards)), cards, missing, assumed)
 
 

@@ -52,7 +52,10 @@ class Table(np.ndarray[Any, Any]):
 
 
 def table_of(records: Sequence[Record], cls: type[Record]) -> Table:
-    """A table of records of a class, which may be none. A list of numbers that a record lacks is zeros, a number that it lacks is NaN."""
+    """A table of records of a class, which may be none.
+
+    A list of numbers that a record lacks is zeros, a number that it lacks is NaN.
+    """
     fields = [_field(name, records, cls()) for name in vars(cls())]
     table = np.zeros(len(records), dtype=fields)
     for name, *_ in fields:
