@@ -187,11 +187,12 @@ FAULTS = {  # what a program does in frame 2, and what the run says of it
     "raises": r"ValueError: no echo \(wrong.py:\d+\)",
     "exits": r"its program has ended with code 7",
     "wrong_type": r"TypeError: a sensor returns dmise.Sightings, or a list of dmise.Sighting, got str",
-    "wrong_item": r"TypeError: a sensor returns dmise.Sighting in a list, got one tuple",
+    "wrong_item": r"TypeError: a sensor returns dmise.Sightings, or a list of dmise.Sighting, got one tuple",
     "too_many": r"sightings: must be at most 100000, got 100001",
     "past": r"sightings\[0\].time_ns: must be within the exposure, 5000000000 to 6000000000, got 4000000000",
     "nan": r"sightings\[0\].range_m: must be finite, got nan",
-    "no_error": r"sightings\[0\].covariance_rad2: must be > 0, got 0",
+    "no_error": r"ValueError: sigma_rad: must be > 0, got 0",
+    "flat": r"sightings\[0\].covariance_rad2: must be > 0, got 0",
     "covariance": r"sightings\[0\].covariance_rad2: must be positive definite, got covariance 2e-09",
     "shape": r"ValueError: covariance_rad2: must have the shape \(3,\), got \(2,\)",
     "no_sigma": r"ValueError: sigma_rad or covariance_rad2: is needed",
@@ -238,6 +239,9 @@ def asks_first(binary, directory):
               f"{command} asks: {said.strip()[-150:]}")
     for command in (["check"], ["explain"], ["visible", "--print-only"]):
         dmise(binary, command[0], scenario, *command[1:])
+    said = dmise(binary, "run", scenario, "--replay-node", "blind=no.mcap", "--replay-node", "laser=no.mcap", "--out", directory / "ask",
+                 code=2)
+    check("--replay-node: blind is a sensor, which is not replayed, got blind=no.mcap" in said, said.strip()[-150:])
     check(not list(directory.glob("never*")), "none of them starts it")
 
 

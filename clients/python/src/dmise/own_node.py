@@ -27,8 +27,9 @@ import zmq
 from . import own_detector, own_sensor, own_tracker, protocol
 from .convert import record_of, start_of
 from .message import records_in
-from .own_detector import Detector, Served
+from .own_detector import Detector
 from .own_sensor import Observer
+from .own_served import Served
 from .own_states import StatesWriter
 from .own_tracker import Known, Tracker
 from .topics import is_wanted
