@@ -12,7 +12,7 @@ import re
 import subprocess
 import sys
 
-from harness import CAMERA, PATIENCE_S, Run, check, check_same, main, products
+from harness import CAMERA, PATIENCE_S, Run, check, check_same, main, products, wait_until
 from own_detector import lines_of, without_digest
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -182,6 +182,24 @@ def dies_and_goes_on(binary, directory):
               f"{command}: a sensor that is killed thrice observes the same: {len(ours)} files")
 
 
+def goes_on_after_a_stop(binary, directory):
+    """Also in its first second, when no exposure is over yet."""
+    reference = {path: without_digest(content) for path, content in products(directory / "run").items()}
+    scenario = write(directory, "slow.yaml", program("mortal", **RANGING, lives=str(directory / "slow"), ends=[], how=[], sleep_s=0.2))
+    for first, second, begun in (("run", "launch", "logs/laser-ranger.log"), ("launch", "run", "logs/laser-ranger.log"),
+                                 ("run", "run", "logs"), ("launch", "launch", "ranger/frames.jsonl")):
+        out = directory / f"stopped-{first}-{second}"
+        with Run(binary, first, scenario, "--allow-programs", "--out", out) as run:
+            wait_until(lambda: (out / begun).exists(), begun)
+            run.interrupt()
+            code, _ = run.finish()
+            check(code == 130, f"{first} stops after Ctrl-C as soon as there is {begun}: code {code}")
+            run.nothing_left()
+        dmise(binary, second, scenario, "--allow-programs", "--out", out)
+        ours = {path: without_digest(content) for path, content in products(out).items()}
+        check(ours == reference, f"{second} goes on: the products are those of a run that was not stopped")
+
+
 RANGER = r"ranger: laser: frame 2 \(tick 2\): "
 FAULTS = {  # what a program does in frame 2, and what the run says of it
     "raises": r"ValueError: no echo \(wrong.py:\d+\)",
@@ -250,6 +268,7 @@ def test(binary, directory):
     asks_first(binary, directory)
     is_a_sensor(binary, directory)
     dies_and_goes_on(binary, directory)
+    goes_on_after_a_stop(binary, directory)
     ends_with_a_reason(binary, directory)
 
 
