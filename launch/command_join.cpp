@@ -274,7 +274,7 @@ void join(JoinOptions options) {
   if (options.slot > 0 && !kind_of_any(options.node))
     throw ConfigError(std::string("--slot: is for `") + any_sensor + "` and `" + any_own_node +
                       "`, got " + options.node);
-  if (options.slot == 0) options.slot = slot_of_environment();
+  if (options.slot == 0 && kind_of_any(options.node)) options.slot = slot_of_environment();
   if (options.slot < 0)
     throw ConfigError("DMISE_SLOT: must be from 1, got " + std::to_string(options.slot));
   Scenario scenario = load_scenario(options.scenario);

@@ -16,9 +16,12 @@ std::map<std::string, std::string> recordings_of(const std::vector<std::string>&
   std::map<std::string, std::string> recordings;
   for (const std::string& one : replayed) {
     const std::string name = one.substr(0, one.find('='));
-    if (name == one ||
-        std::ranges::find(scenario.own_nodes, name, &OwnNode::name) == scenario.own_nodes.end())
+    const auto node = std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
+    if (name == one || node == scenario.own_nodes.end())
       throw ConfigError("--replay-node: must be NODE=FILE with a node of `nodes`, got " +
+                        printable(one));
+    if (node->role == OwnNodeRole::sensor)
+      throw ConfigError("--replay-node: " + name + " is a sensor, which is not replayed, got " +
                         printable(one));
     recordings[name] = one.substr(name.size() + 1);
   }

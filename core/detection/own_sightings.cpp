@@ -83,22 +83,28 @@ void check_observed(const Observed& observed, SimTime start, SimTime end) {
     check_sighting("sightings[" + std::to_string(i) + "].", observed.sightings[i], start, end);
 }
 
+double right_ascension_rad(double told_rad) {
+  const double from_zero = told_rad < 0.0 ? told_rad + 2 * pi : told_rad;
+  return from_zero < 2 * pi ? from_zero : 0.0;
+}
+
 Wcs wcs_without_image(double boresight_ra_rad, double boresight_dec_rad) {
   return {.projection = Projection::equidistant,
-          .ra_rad = boresight_ra_rad,
+          .ra_rad = right_ascension_rad(boresight_ra_rad),
           .dec_rad = boresight_dec_rad,
           .cd_deg = {-1, 0, 0, 1}};
 }
 
 Detection detection_of(const OwnSighting& s, const FrameReport& report, const Vec<Gcrs>& sensor_m,
                        const Vec<Gcrs>& sensor_m_per_s) {
+  const double ra_rad = right_ascension_rad(s.ra_rad);
   Detection d{.sensor = report.sensor,
               .frame = report.frame,
               .epoch = epoch_of(s.time, report),
               .time = s.time,
-              .ra_rad = s.ra_rad,
+              .ra_rad = ra_rad,
               .dec_rad = s.dec_rad,
-              .corrected_ra_rad = s.ra_rad,
+              .corrected_ra_rad = ra_rad,
               .corrected_dec_rad = s.dec_rad,
               .covariance_rad2 = s.covariance_rad2,
               .sensor_position_m = sensor_m,

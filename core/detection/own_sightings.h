@@ -11,6 +11,9 @@ inline constexpr std::size_t max_sightings = 100'000;  // of an exposure
 /// Throws `Error` "KEY: reason, got VALUE" for what can't have been seen from `start` to `end`.
 void check_observed(const Observed& observed, SimTime start, SimTime end);
 
+/// Right ascension in [0, 2 pi), of one that `check_observed` accepts.
+double right_ascension_rad(double told_rad);
+
 /// World coordinates of an exposure without an image: equidistant about the boresight, 1 px is
 /// 1 deg.
 Wcs wcs_without_image(double boresight_ra_rad, double boresight_dec_rad);

@@ -96,6 +96,11 @@ const ObjectStates& OwnActor::states_of(Tick call) const {
   return *std::ranges::find(held_, tick_of(call), &ObjectStates::tick);
 }
 
+std::string OwnActor::lost_at() const {
+  const std::string first = "tick " + std::to_string(tick_of(said_.next()));
+  return asked_.size() > 1 ? first + " to " + std::to_string(asked_.back().tick) : first;
+}
+
 bool OwnActor::hear_up_to(Tick call) {
   const auto is_held = [&] { return !held_.empty() && held_.back().tick >= tick_of(call); };
   while (!is_held()) {
@@ -103,7 +108,9 @@ bool OwnActor::hear_up_to(Tick call) {
       if (!hear()) return false;
     } catch (const ProgramLost& lost) {
       program_.reset();
-      restarts_.after(lost, "tick " + std::to_string(tick_of(said_.next())));
+      restarts_.after(lost, lost_at());
+    } catch (const ProgramEnded& ended) {
+      throw Error(settings_.error_prefix + lost_at() + ": " + ended.what());
     } catch (const Error& error) {
       throw Error(settings_.error_prefix + "tick " + std::to_string(tick_of(said_.next())) + ": " +
                   error.what());

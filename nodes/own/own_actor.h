@@ -50,6 +50,8 @@ class OwnActor : public Participant {
   void look_at_places(const ObjectStates& states, const EarthOrientation& earth);
   v1::OwnNodeBegin begin() const;
   const ObjectStates& states_of(Tick call) const;
+  /// The ticks at one of which the program was lost or has ended: those that it was asked for.
+  std::string lost_at() const;
   Tick tick_of(Tick call) const { return call * node_.period_ticks; }
 
   const Scenario& scenario_;

@@ -166,7 +166,7 @@ bool OwnProgram::has_ended() {
 
 void OwnProgram::throw_end() const {
   if (WIFSIGNALED(status_)) throw ProgramLost(end_text(status_));
-  throw Error(end_text(status_) + (endpoint_ ? " before it was ready" : "") + last_words());
+  throw ProgramEnded(end_text(status_) + (endpoint_ ? " before it was ready" : "") + last_words());
 }
 
 void OwnProgram::require_alive() {
@@ -233,12 +233,19 @@ std::optional<OwnProgram::Stepped> OwnProgram::stepped() {
   return stepped;
 }
 
+std::optional<OwnProgram::Answer> OwnProgram::exchange(const v1::OwnNodeRequest& request,
+                                                       Frames more, const char* what,
+                                                       v1::OwnNodeAnswer::BodyCase wanted,
+                                                       std::size_t frames) {
+  if (!send(request, settings_.silent_after_s, more)) return std::nullopt;
+  return heard(what, wanted, frames);
+}
+
 std::optional<v1::OwnNodeFound> OwnProgram::find(const v1::OwnNodeFrame& frame,
                                                  std::string_view counts) {
   v1::OwnNodeRequest request;
   *request.mutable_frame() = frame;
-  if (!send(request, settings_.silent_after_s, {&counts, 1})) return std::nullopt;
-  auto got = heard("frame", v1::OwnNodeAnswer::kFound, 1);
+  auto got = exchange(request, {&counts, 1}, "frame", v1::OwnNodeAnswer::kFound, 1);
   if (!got) return std::nullopt;
   return std::move(*got->head.mutable_found());
 }
@@ -247,8 +254,7 @@ std::optional<v1::OwnNodeObserved> OwnProgram::observe(const v1::OwnNodeObserve&
                                                        Frames more) {
   v1::OwnNodeRequest request;
   *request.mutable_observe() = exposure;
-  if (!send(request, settings_.silent_after_s, more)) return std::nullopt;
-  auto got = heard("frame", v1::OwnNodeAnswer::kObserved, 1);
+  auto got = exchange(request, more, "frame", v1::OwnNodeAnswer::kObserved, 1);
   if (!got) return std::nullopt;
   return std::move(*got->head.mutable_observed());
 }
@@ -257,8 +263,7 @@ std::optional<OwnProgram::Tracked> OwnProgram::track(const v1::OwnNodeTrack& tra
                                                      Frames exposures) {
   v1::OwnNodeRequest request;
   *request.mutable_track() = track;
-  if (!send(request, settings_.silent_after_s, exposures)) return std::nullopt;
-  auto got = heard("tick", v1::OwnNodeAnswer::kTracked, 2);
+  auto got = exchange(request, exposures, "tick", v1::OwnNodeAnswer::kTracked, 2);
   if (!got) return std::nullopt;
   v1::OwnNodeTracked& head = *got->head.mutable_tracked();
   const std::string_view set = views(got->frames)[1];

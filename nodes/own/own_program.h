@@ -25,6 +25,12 @@ class ProgramLost : public Error {
   using Error::Error;
 };
 
+/// The program has ended by itself.
+class ProgramEnded : public Error {
+ public:
+  using Error::Error;
+};
+
 /// How a program is started and how long it may be silent.
 struct ProgramSettings {
   std::string name;                  // of the node
@@ -37,8 +43,8 @@ struct ProgramSettings {
 };
 
 /// A program of the user's as a child process, and what is said with it (docs/wire.md, Own nodes).
-/// All functions throw `ProgramLost`, and `Error` for an answer that is not one or says that the
-/// program failed.
+/// All functions throw `ProgramLost` or `ProgramEnded`, and `Error` for an answer that is not one
+/// or says that the program failed.
 class OwnProgram {
  public:
   using Frames = std::span<const std::string_view>;
@@ -85,6 +91,9 @@ class OwnProgram {
   bool try_to_send(const v1::OwnNodeRequest& request, Frames more = {});
   /// Waits until the program is connected; false after the stop.
   bool send(const v1::OwnNodeRequest& request, double within_s, Frames more = {});
+  /// Asks, and returns the answer as `heard` does.
+  std::optional<Answer> exchange(const v1::OwnNodeRequest& request, Frames more, const char* what,
+                                 v1::OwnNodeAnswer::BodyCase wanted, std::size_t frames);
   /// The next answer, which must be of this kind and have this many frames; nothing after the stop.
   /// `what`: that it answers, for messages.
   std::optional<Answer> heard(const char* what, v1::OwnNodeAnswer::BodyCase wanted,

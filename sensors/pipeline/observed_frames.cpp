@@ -88,7 +88,7 @@ FrameReport ObservedFrames::report_of(const FrameTimes& exposure, const Observer
           .start = exposure.start,
           .middle = exposure.middle,
           .end = exposure.end,
-          .boresight_ra_rad = observed.boresight_ra_rad,
+          .boresight_ra_rad = right_ascension_rad(observed.boresight_ra_rad),
           .boresight_dec_rad = observed.boresight_dec_rad,
           .wcs = wcs_without_image(observed.boresight_ra_rad, observed.boresight_dec_rad),
           .sensor_position_m = told.position_m,

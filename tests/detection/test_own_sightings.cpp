@@ -102,8 +102,21 @@ TEST(OwnSightings, BecomeDetections) {
   // East, and behind the sensor: everything has a place.
   one.ra_rad = 1.0 + 90 * deg, one.dec_rad = 0.0;
   EXPECT_LT(detection_of(one, report, {}, {}).x_px, -80);
-  one.ra_rad = 1.0 + pi, one.dec_rad = -dec;
+  one.ra_rad = 1.0 - pi, one.dec_rad = -dec;
   EXPECT_TRUE(std::isfinite(detection_of(one, report, {}, {}).x_px));
+}
+
+// Programs say what atan2 gives; products have right ascensions from 0 to 2 pi.
+TEST(OwnSightings, RightAscensionsBeginAtZero) {
+  OwnSighting one = sighting();
+  one.ra_rad = -1.0;
+  const FrameReport report{.wcs = wcs_without_image(-0.5, 0.0)};
+  EXPECT_EQ(report.wcs.ra_rad, 2 * pi - 0.5);
+  const Detection d = detection_of(one, report, {}, {});
+  for (const double ra_rad : {d.ra_rad, d.corrected_ra_rad, d.end1_ra_rad, d.end2_ra_rad})
+    EXPECT_EQ(ra_rad, 2 * pi - 1.0);
+  for (const double zero : {0.0, -1e-18, 2 * pi, -2 * pi})
+    EXPECT_EQ(right_ascension_rad(zero), 0.0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/config/scenario.h"
+#include "dmise/v1/node.pb.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/wire/state_codec.h"
 
@@ -63,9 +64,10 @@ inline ObjectStates states_at(Tick tick) {
           .velocity_m_per_s = {0, 0, 1},
           .code = {0}};
 }
-inline std::string recorded(const ObjectStates& states) {
-  const Encoded body = encode(states);
+inline std::string recorded(const State& state, const std::string& envelope = "") {
+  const Encoded body = encode(state);
   google::protobuf::UnknownFieldSet fields;  // of RecordedMessage
+  fields.AddLengthDelimited(1)->assign(envelope);
   fields.AddLengthDelimited(2)->assign(body.arrays);
   fields.AddLengthDelimited(int(body.kind))->assign(body.payload);
   std::string record;
@@ -73,14 +75,27 @@ inline std::string recorded(const ObjectStates& states) {
   return record;
 }
 
-/// Its records.
-inline std::string sample_records(Tick last_tick = sample_last_tick) {
+/// The envelope of the last message of a tick.
+inline std::string envelope_of_last(Tick tick) {
+  v1::Envelope envelope;
+  envelope.set_tick(tick);
+  envelope.set_last_of_tick(true);
+  return envelope.SerializeAsString();
+}
+
+/// What says of which run the records are.
+inline std::string run_records() {
   v1::Endpoints run;
   run.set_tick_ns(sample_scenario().tick.ns);
   run.set_scenario_digest(sample_digest);
-  std::string records = channel_record(1, "run", "dmise.v1.Endpoints") +
-                        message_record(1, run.SerializeAsString()) +
-                        channel_record(2, "state/actor/gnc", "dmise.v1.RecordedMessage");
+  return channel_record(1, "run", "dmise.v1.Endpoints") +
+         message_record(1, run.SerializeAsString());
+}
+
+/// The records of the node "gnc".
+inline std::string sample_records(Tick last_tick = sample_last_tick) {
+  std::string records =
+      run_records() + channel_record(2, "state/actor/gnc", "dmise.v1.RecordedMessage");
   for (Tick tick = 0; tick <= last_tick; ++tick)
     records += message_record(2, recorded(states_at(tick)));
   return records;

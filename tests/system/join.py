@@ -97,8 +97,10 @@ def own_nodes(binary, directory):
         first = stack.join("own-node", "--allow-programs", called="first")
         check(joins_as(first, "dmise-own-node") == "gnc", "it is the node of the scenario")
         spare = stack.join("own-node", "--allow-programs", called="spare")
+        os.environ["DMISE_SLOT"] = "1"  # is for nodes that have no name
         for node in (*NODES, "alpha", "beta"):
             stack.join(node)
+        del os.environ["DMISE_SLOT"]
         first_frame(out, "alpha")
         os.kill(first.process.pid, signal.SIGKILL)
         check(joins_as(spare, "dmise-own-node") == "gnc", "a spare takes the place of an own node that was killed")

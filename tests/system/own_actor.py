@@ -226,6 +226,15 @@ def ends_with_a_reason(binary, directory):
             run.nothing_left()
 
 
+def tells_where_it_may_have_died(binary, directory):
+    """A program that is asked ahead has died at one of the ticks that it was asked for."""
+    for fault, words in (("killed", "was killed \\(Killed\\)"), ("exits", "has ended with code 7"), ("stopped", "has not answered for ")):
+        scenario = write(directory, "ahead.yaml", node=program("wrong", fault=fault, at=40), duration_s=60, cadence_s=30)
+        said = dmise(binary, "run", scenario, "--allow-programs", "--out", directory / f"ahead-{fault}", code=1)
+        place = re.search(r"gnc: tick (\d+)(?: to (\d+))?: its program " + words, said)
+        check(place and int(place[1]) <= 40 <= int(place[2] or place[1]) <= 60, said.strip().splitlines()[-1])
+
+
 def asks_of_what_is_odd(binary, directory):
     """What a sensor misses is told with what the model may have forgotten."""
     for fault, words in {"no_return": "gnc: no object has a state at tick 0: does the model return what it computes?",
@@ -297,6 +306,7 @@ def test(binary, directory):
     turns(binary, directory)
     tells_an_albedo(binary, directory)
     ends_with_a_reason(binary, directory)
+    tells_where_it_may_have_died(binary, directory)
     asks_of_what_is_odd(binary, directory)
     dies_and_goes_on(binary, directory, schedules, seed)
     node_dies(binary, directory)

@@ -12,7 +12,7 @@ import re
 import subprocess
 import sys
 
-from harness import CAMERA, PATIENCE_S, Run, check, check_same, main, products
+from harness import CAMERA, PATIENCE_S, Run, check, check_same, main, products, wait_until
 from own_detector import lines_of, without_digest
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -182,16 +182,35 @@ def dies_and_goes_on(binary, directory):
               f"{command}: a sensor that is killed thrice observes the same: {len(ours)} files")
 
 
+def goes_on_after_a_stop(binary, directory):
+    """Also in its first second, when no exposure is over yet."""
+    reference = {path: without_digest(content) for path, content in products(directory / "run").items()}
+    scenario = write(directory, "slow.yaml", program("mortal", **RANGING, lives=str(directory / "slow"), ends=[], how=[], sleep_s=0.2))
+    for first, second, begun in (("run", "launch", "logs/laser-ranger.log"), ("launch", "run", "logs/laser-ranger.log"),
+                                 ("run", "run", "logs"), ("launch", "launch", "ranger/frames.jsonl")):
+        out = directory / f"stopped-{first}-{second}"
+        with Run(binary, first, scenario, "--allow-programs", "--out", out) as run:
+            wait_until(lambda: (out / begun).exists(), begun)
+            run.interrupt()
+            code, _ = run.finish()
+            check(code == 130, f"{first} stops after Ctrl-C as soon as there is {begun}: code {code}")
+            run.nothing_left()
+        dmise(binary, second, scenario, "--allow-programs", "--out", out)
+        ours = {path: without_digest(content) for path, content in products(out).items()}
+        check(ours == reference, f"{second} goes on: the products are those of a run that was not stopped")
+
+
 RANGER = r"ranger: laser: frame 2 \(tick 2\): "
 FAULTS = {  # what a program does in frame 2, and what the run says of it
     "raises": r"ValueError: no echo \(wrong.py:\d+\)",
     "exits": r"its program has ended with code 7",
     "wrong_type": r"TypeError: a sensor returns dmise.Sightings, or a list of dmise.Sighting, got str",
-    "wrong_item": r"TypeError: a sensor returns dmise.Sighting in a list, got one tuple",
+    "wrong_item": r"TypeError: a sensor returns dmise.Sightings, or a list of dmise.Sighting, got one tuple",
     "too_many": r"sightings: must be at most 100000, got 100001",
     "past": r"sightings\[0\].time_ns: must be within the exposure, 5000000000 to 6000000000, got 4000000000",
     "nan": r"sightings\[0\].range_m: must be finite, got nan",
-    "no_error": r"sightings\[0\].covariance_rad2: must be > 0, got 0",
+    "no_error": r"ValueError: sigma_rad: must be > 0, got 0",
+    "flat": r"sightings\[0\].covariance_rad2: must be > 0, got 0",
     "covariance": r"sightings\[0\].covariance_rad2: must be positive definite, got covariance 2e-09",
     "shape": r"ValueError: covariance_rad2: must have the shape \(3,\), got \(2,\)",
     "no_sigma": r"ValueError: sigma_rad or covariance_rad2: is needed",
@@ -238,6 +257,9 @@ def asks_first(binary, directory):
               f"{command} asks: {said.strip()[-150:]}")
     for command in (["check"], ["explain"], ["visible", "--print-only"]):
         dmise(binary, command[0], scenario, *command[1:])
+    said = dmise(binary, "run", scenario, "--replay-node", "blind=no.mcap", "--replay-node", "laser=no.mcap", "--out", directory / "ask",
+                 code=2)
+    check("--replay-node: blind is a sensor, which is not replayed, got blind=no.mcap" in said, said.strip()[-150:])
     check(not list(directory.glob("never*")), "none of them starts it")
 
 
@@ -246,6 +268,7 @@ def test(binary, directory):
     asks_first(binary, directory)
     is_a_sensor(binary, directory)
     dies_and_goes_on(binary, directory)
+    goes_on_after_a_stop(binary, directory)
     ends_with_a_reason(binary, directory)
 
 

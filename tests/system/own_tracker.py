@@ -176,7 +176,7 @@ FAULTS = {  # what a program does at tick 3, and what the run says of it
     "raises": r"ValueError: no orbit \(wrong.py:\d+\)",
     "exits": r"its program has ended with code 7",
     "wrong_type": r"TypeError: a tracker returns dmise.Tracks, or a list of dmise.Track, got int",
-    "wrong_item": r"TypeError: a tracker returns dmise.Track in a list, got one tuple",
+    "wrong_item": r"TypeError: a tracker returns dmise.Tracks, or a list of dmise.Track, got one tuple",
     "shape": r"ValueError: track 1: position_m: must have 3 numbers, got the shape \(2,\)",
     "nan": r"position_m: must be in .*, got nan",
     "far": r"position_m: must be in .*",

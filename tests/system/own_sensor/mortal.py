@@ -2,6 +2,7 @@
 import os
 import pathlib
 import signal
+import time
 
 import dmise
 import ranging
@@ -9,6 +10,7 @@ import ranging
 
 @dmise.sensor
 def station(exposure, world, options):
+    time.sleep(options.get("sleep_s", 0.0))
     lives = pathlib.Path(options["lives"])
     lives.touch()
     lived = len(lives.read_text())

@@ -7,10 +7,8 @@
 """
 from __future__ import annotations
 
-import inspect
-import os
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +16,7 @@ import numpy.typing as npt
 
 from . import protocol
 from .cards import CardValue, values_of
+from .own_served import Served, list_of, number_of, numbers_in, one_by_one, variance_of
 
 
 @dataclass
@@ -65,29 +64,6 @@ class SensorFrame:
         return float(self.header["EXPTIME"])
 
 
-class Served:
-    """A function of the user's, or a class whose instances are called so."""
-
-    def __init__(self, model: Callable[..., Any]) -> None:
-        self._model = model
-
-    def make(self) -> Any:
-        return self._model() if isinstance(self._model, type) else self._model
-
-    def __call__(self, *arguments: Any) -> Any:
-        return self._model(*arguments)
-
-    def places(self) -> list[str]:
-        """Where the model is defined: "gnc.py:7"; of a class the function that is called; none if it has no source."""
-        called = self._model.__call__ if isinstance(self._model, type) else self._model
-        try:
-            file, (lines, first) = inspect.getfile(called), inspect.getsourcelines(called)
-        except (OSError, TypeError):
-            return []
-        names = [i for i, line in enumerate(lines) if line.lstrip().startswith(("def ", "async def "))]
-        return [f"{os.path.basename(file)}:{first + min(names, default=0)}"]
-
-
 class Detector(Served):
     """A function `f(frame, options)` that returns what is in a frame, or a class whose instances are called so."""
 
@@ -106,33 +82,11 @@ def frame_of(frame: Any, counts: bytes, node: str) -> SensorFrame:
 
 def packed(said: Any) -> Any:
     """What a detector says, as OwnNodeFound."""
-    each = [said] if isinstance(said, Found) else said
-    if isinstance(each, (str, bytes)) or not isinstance(each, Iterable):
-        raise TypeError(f"a detector returns dmise.Found, or a list of them, got {type(said).__name__}")
     found = protocol.OwnNodeFound()
-    for one in each:
-        if not isinstance(one, Found):
-            raise TypeError(f"a detector returns dmise.Found, or a list of them, got one {type(one).__name__}")
+    for one in list_of([said] if isinstance(said, Found) else said, Found, "a detector returns dmise.Found, or a list of them"):
         for source in one_by_one(one, len(one.x_px) if np.ndim(one.x_px) else None):
             _add(found, source)
     return found
-
-
-def one_by_one(together: Any, count: int | None) -> Iterable[Any]:
-    """The `count` of which a dataclass has arrays, one by one; without a count it is one."""
-    if count is None:
-        return [together]
-    columns: dict[str, Sequence[Any]] = {}
-    for each in fields(together):
-        value = getattr(together, each.name)
-        if value is None or np.ndim(value) == 0:
-            columns[each.name] = [value] * count
-            continue
-        array = np.asarray(value, np.float64)
-        if array.shape[-1] != count:
-            raise ValueError(f"{each.name}: must have {count} columns, got the shape {array.shape}")
-        columns[each.name] = list(array.T)
-    return [type(together)(**{name: column[i] for name, column in columns.items()}) for i in range(count)]
 
 
 def _add(found: Any, source: Found) -> None:
@@ -160,21 +114,5 @@ def _covariance(source: Found, name: str, sigma_name: str) -> list[float] | None
         return numbers_in(source, name, 3)
     if getattr(source, sigma_name) is None:
         return None
-    sigma = number_of(source, sigma_name)
-    if not sigma > 0.0:
-        raise ValueError(f"{sigma_name}: must be > 0, got {sigma:g}")
-    return [sigma**2, 0.0, sigma**2]
-
-
-def number_of(source: Any, name: str) -> float:
-    try:
-        return float(getattr(source, name))
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: must be a number, got {getattr(source, name)!r}") from None
-
-
-def numbers_in(source: Any, name: str, count: int) -> list[float]:
-    numbers = np.asarray(getattr(source, name), np.float64)
-    if numbers.shape != (count,):
-        raise ValueError(f"{name}: must have the shape {(count,)}, got {numbers.shape}")
-    return [float(number) for number in numbers]
+    variance = variance_of(source, sigma_name)
+    return [variance, 0.0, variance]

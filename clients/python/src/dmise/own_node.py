@@ -27,8 +27,9 @@ import zmq
 from . import own_detector, own_sensor, own_tracker, protocol
 from .convert import record_of, start_of
 from .message import records_in
-from .own_detector import Detector, Served
+from .own_detector import Detector
 from .own_sensor import Observer
+from .own_served import Served
 from .own_states import StatesWriter
 from .own_tracker import Known, Tracker
 from .topics import is_wanted
@@ -127,7 +128,7 @@ class _Conversation:
         self._poller.register(self._lost, zmq.POLLIN)
         self._lock = threading.Lock()  # of the socket while the model works
         self._working = False
-        self._held: list[list[bytes]] = []  # answers
+        self._held: list[list[bytes]] = []  # answers; the other thread's while the model works, as the socket is
         self._held_since_s = 0.0
         self._over = threading.Event()
         if hasattr(sys.stdout, "reconfigure"):
@@ -143,6 +144,8 @@ class _Conversation:
                 self._answer(request, frames[1:])
         finally:
             self._over.set()
+            self._set_working(False)
+            self._send_held()
             self._socket.disable_monitor()
             self._context.destroy(linger=LINGER_MS)
 
@@ -171,7 +174,6 @@ class _Conversation:
         except Exception as error:
             traceback.print_exc()
             self._send([protocol.OwnNodeAnswer(failed=_text_of(error, self._served)).SerializeToString()])
-            self._send_held()
             raise _Failed from error
         self._send(frames)
 
@@ -198,6 +200,7 @@ class _Conversation:
         while not self._over.wait(every_s):
             with self._lock:
                 if self._working:
+                    self._send_held()
                     self._socket.send(alive)
 
     def _begin(self, begin: Any, more: list[bytes]) -> list[bytes]:

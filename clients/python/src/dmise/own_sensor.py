@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from . import protocol
 from .convert import numbers_of, record_of, with_arrays
-from .own_detector import Served, number_of, numbers_in, one_by_one
+from .own_served import Served, list_of, number_of, numbers_in, one_by_one, variance_of
 from .records import Floats
 from .world import ObjectRoster, ObjectStates
 
@@ -126,11 +126,7 @@ def packed(said: Any, exposure: Exposure) -> Any:
     observed = protocol.OwnNodeObserved(frame=exposure.frame, boresight_ra_rad=ra_rad, boresight_dec_rad=dec_rad)
     if said.limiting_magnitude is not None:
         observed.limiting_magnitude = float(said.limiting_magnitude)
-    if isinstance(said.sightings, (str, bytes)) or not isinstance(said.sightings, Iterable):
-        raise TypeError(f"a sensor returns dmise.Sightings, or a list of dmise.Sighting, got {type(said.sightings).__name__}")
-    for each in said.sightings:
-        if not isinstance(each, Sighting):
-            raise TypeError(f"a sensor returns dmise.Sighting in a list, got one {type(each).__name__}")
+    for each in list_of(said.sightings, Sighting, "a sensor returns dmise.Sightings, or a list of dmise.Sighting"):
         for one in one_by_one(each, _count_of(each)):
             _add(observed, one, exposure)
     return observed
@@ -147,8 +143,7 @@ def _angles(direction: Floats, name: str) -> tuple[float, float]:
     if direction.shape != (3,):
         raise ValueError(f"{name}: must have the shape (3,), got {direction.shape}")
     x, y, z = (float(value) for value in direction)
-    length = math.sqrt(x * x + y * y + z * z)
-    if not 0.0 < length < math.inf:
+    if not 0.0 < math.hypot(x, y, z) < math.inf:
         raise ValueError(f"{name}: must be a finite direction, got {direction.tolist()}")
     return math.atan2(y, x), math.atan2(z, math.hypot(x, y))
 
@@ -164,7 +159,7 @@ def _add(observed: Any, sighting: Sighting, exposure: Exposure) -> None:
     if sighting.covariance_rad2 is not None:
         added.covariance_rad2.extend(numbers_in(sighting, "covariance_rad2", 3))
     elif sighting.sigma_rad is not None:
-        variance = number_of(sighting, "sigma_rad")**2
+        variance = variance_of(sighting, "sigma_rad")
         added.covariance_rad2.extend([variance, 0.0, variance])
     else:
         raise ValueError("sigma_rad or covariance_rad2: is needed")

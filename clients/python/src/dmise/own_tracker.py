@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from . import protocol
 from .convert import record_of, with_arrays
-from .own_detector import Served
+from .own_served import Served, list_of
 from .records import Detection, Floats, FrameReport, Track
 from .world import ObjectRoster
 
@@ -104,25 +104,17 @@ def frames_of(frames: Sequence[bytes], start: datetime.datetime | None) -> list[
 
 def packed(said: Any, tick: int, time_ns: int) -> tuple[Any, Any]:
     """What a tracker says, as OwnNodeTracked and TrackSet."""
+    wanted = "a tracker returns dmise.Tracks, or a list of dmise.Track"
     if not isinstance(said, Tracks):
-        said = Tracks(_list_of(said, Track))
+        said = Tracks(list_of(said, Track, wanted))
     tracked, tracks = protocol.OwnNodeTracked(), protocol.TrackSet(tick=tick, time_ns=time_ns)
-    for track in sorted(_list_of(said.tracks, Track), key=lambda one: one.id):
+    for track in sorted(list_of(said.tracks, Track, wanted), key=lambda one: one.id):
         _add(tracks, track, time_ns)
     if said.tasks is not None:
         tracked.points.SetInParent()
-        for point in _list_of(said.tasks, Point):
+        for point in list_of(said.tasks, Point, "the tasks of dmise.Tracks are a list of dmise.Point"):
             tracked.points.points.add(sensor=point.sensor, track=point.track, exposures=point.exposures)
     return tracked, tracks
-
-
-def _list_of(said: Any, kind: type) -> list[Any]:
-    if isinstance(said, (str, bytes)) or not isinstance(said, Iterable):
-        raise TypeError(f"a tracker returns dmise.Tracks, or a list of dmise.Track, got {type(said).__name__}")
-    each = list(said)
-    if wrong := [one for one in each if not isinstance(one, kind)]:
-        raise TypeError(f"a tracker returns dmise.{kind.__name__} in a list, got one {type(wrong[0]).__name__}")
-    return each
 
 
 def _add(tracks: Any, track: Track, time_ns: int) -> None:
