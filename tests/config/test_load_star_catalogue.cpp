@@ -13,8 +13,7 @@ namespace dmise {
 namespace {
 
 /// An empty directory in which the variables of a user's directories point while it lives.
-class LoadStarCatalogue : public testing::Test {
- protected:
+struct LoadStarCatalogue : testing::Test {
   LoadStarCatalogue() {
     std::filesystem::create_directories(directory_);
     for (const char* variable : {"XDG_CACHE_HOME", "XDG_DATA_HOME"})

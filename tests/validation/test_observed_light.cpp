@@ -14,8 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class Exposures : public testing::Test {
- protected:
+struct Exposures : testing::Test {
   Exposures() {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
     make_directories(directory_ + "/brightness", "test");
