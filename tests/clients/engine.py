@@ -3,6 +3,7 @@
     engine.py DMISE
 """
 import ast
+import ctypes
 import gc
 import json
 import os
@@ -36,6 +37,7 @@ except ImportError as missing:
     sys.exit(77)
 
 DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
+os.environ["PATH"] = f"{DMISE.parent}:{os.environ['PATH']}"  # where the module finds the program, as that of an installed package
 SENSOR = """\
   - name: {name}
     site: {{latitude_deg: 33, longitude_deg: -100, height_m: 300}}
@@ -59,6 +61,8 @@ LARGE = SCENARIO.replace("columns: 160, rows: 120", "columns: 6000, rows: 6000")
 
 
 def resident_mb():
+    """Without what has been freed and the allocator keeps, which threads that meet by chance make more or less."""
+    ctypes.CDLL(None).malloc_trim(0)
     for line in pathlib.Path("/proc/self/status").read_text().splitlines():
         if line.startswith("VmRSS"):
             return int(line.split()[1]) / 1024
