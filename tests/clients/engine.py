@@ -254,6 +254,8 @@ class Frames(unittest.TestCase):
         self.assertEqual(dmise.check(SCENARIO), {**json.loads(text), "scenario": "scenario"})
         with self.assertRaisesRegex(dmise.ScenarioError, "^scenario:2:16: simulation.start: is missing"):
             dmise.check({"simulation": {}})
+        with self.assertRaisesRegex(dmise.ScenarioError, "--help: No such file"):
+            dmise.check("--help")
 
     def test_survey_is_the_command(self):
         with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:

@@ -86,7 +86,8 @@ def _file_of(scenario: Scenario) -> Iterator[str]:
     """A file of the scenario, in memory if it is none."""
     text = text_of(scenario)
     if text is None:
-        yield os.fspath(scenario)  # type: ignore[arg-type]
+        path = os.fspath(scenario)  # type: ignore[arg-type]
+        yield f"./{path}" if path.startswith("-") else path  # which is no option
         return
     file = os.memfd_create("scenario", 0)  # which the program inherits
     try:
