@@ -60,7 +60,8 @@ std::optional<std::size_t> ObservedFrames::platform(const FrameTimes& exposure,
   for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
     if (!world.has_state(object, t))
       throw Error(sensor_.name + ": " + world.roster().objects[object].name +
-                  " has no state at frame " + std::to_string(exposure.frame));
+                  " has no state at frame " + std::to_string(exposure.frame) + ": " +
+                  world.why_no_state(object, t));
   return object;
 }
 
