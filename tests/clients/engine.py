@@ -14,7 +14,10 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
+import unittest.mock
+import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/system"), str(ROOT / "build/python")]
@@ -168,6 +171,76 @@ class Frames(unittest.TestCase):
                 self.assertLess(np.hypot(x - row["end1_x_px"], y - row["end1_y_px"]), 1e-3)
                 found += 1
         self.assertGreater(found, 0)
+
+    def test_a_picture_is_that_of_a_run(self):
+        """One that writes pictures."""
+        frame = next(dmise.Simulation(self.path, seed=3).frames("west"))
+        with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+            pictured = pathlib.Path(directory) / "night.yaml"
+            pictured.write_text(SCENARIO.replace("png: off", "png: on"))
+            subprocess.run([DMISE, "run", pictured, "--out", f"{directory}/run", "--seed", "3"], check=True, capture_output=True)
+            self.assertEqual(frame.to_png(), (pathlib.Path(directory) / "run/west/frame-000001.png").read_bytes())
+        self.assertEqual(frame._repr_png_(), frame.to_png())
+
+    def test_notebooks_show_tables_and_runs(self):
+        frame = next(dmise.Simulation(self.path, seed=3).frames("west"))
+        shown = xml.etree.ElementTree.fromstring(f"<body>{frame.detections._repr_html_()}</body>")
+        head = [cell.text for cell in shown.iter("th")]
+        self.assertEqual(head, list(frame.detections.dtype.names))
+        row = [cell.text for cell in shown.find(".//tbody/tr")]
+        self.assertEqual(row[head.index("sensor")], "west")
+        self.assertAlmostEqual(float(row[head.index("x_px")]), frame.detections["x_px"][0], places=3)
+        self.assertIn(f"{len(frame.detections)} rows", shown.find("p").text)
+        self.assertIn("0 rows", frame.detections[:0]._repr_html_())
+        rows = [[cell.text for cell in line] for line in
+                xml.etree.ElementTree.fromstring(f"<body>{self.run_._repr_html_()}</body>").iter("tr")]
+        for sensor in ("west", "east"):
+            counts = [str(sum(record.sensor == sensor for record in records))
+                      for records in (self.run_.frames, self.run_.truth, self.run_.detections)]
+            self.assertIn([sensor, *counts], rows)
+
+    def test_texts_in_a_page_are_escaped(self):
+        link = self.run_directory.with_name("a<b>&c")
+        link.symlink_to(self.run_directory)
+        self.assertIn("a&lt;b&gt;&amp;c", dmise.open_run(link)._repr_html_())
+
+    def test_progress_counts_frames(self):
+        bars = []
+
+        class Bar:
+            def __init__(self, total, unit):
+                bars.append([total, 0, False])
+
+            def __enter__(self):
+                return self
+
+            def __exit__(self, *error):
+                bars[-1][2] = True
+
+            def update(self):
+                bars[-1][1] += 1
+
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": types.ModuleType("tqdm"), "tqdm.auto": types.SimpleNamespace(tqdm=Bar)}):
+            simulation = dmise.Simulation(SCENARIO)
+            self.assertEqual([f.number for f in simulation.frames("west", progress=True)], [1, 2, 3])
+            next(simulation.frames(progress=True))
+        self.assertEqual(bars, [[3, 3, True], [6, 1, True]])
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}), self.assertRaisesRegex(ImportError, "tqdm"):
+            dmise.Simulation(SCENARIO).frames(progress=True)
+
+    def test_a_scenario_as_yaml_is_the_same(self):
+        """Read by PyYAML, and by the engine."""
+        mapping = yaml.safe_load(SCENARIO)
+        mapping["sensors"][0] |= {"exposure_s": np.float64(8.0), "name": "on"}
+        text = dmise.to_yaml(mapping)
+        self.assertEqual(yaml.safe_load(text), json.loads(dmise.Simulation(mapping).yaml))
+        self.assertEqual(dmise.Simulation(text).digest, dmise.Simulation(mapping).digest)
+        self.assertEqual(dmise.Simulation(self.path).yaml, SCENARIO)
+        for value in (1e-7, 1.5e20, "", "a: b", "#", "- x", "ü", "no", "1", None, True, [], {}, [[1, {"a": []}], []], "a\nb", "'"):
+            self.assertEqual(yaml.safe_load(dmise.to_yaml({"k": value, "l": [{"m": value}]})), {"k": value, "l": [{"m": value}]})
+        for wrong, error in (("text\n", TypeError), ({"a": float("nan")}, dmise.ScenarioError), ({"a": {1}}, dmise.ScenarioError)):
+            with self.assertRaises(error):
+                dmise.to_yaml(wrong)
 
     def test_tables_of_pandas(self):
         truth = next(dmise.Simulation(SCENARIO).frames("west")).truth
