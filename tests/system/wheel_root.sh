@@ -52,6 +52,7 @@ make_with_another_python() {  # ROOT OUT
   printf '#!/bin/sh\nPYTHONHOME=%s exec %s --library-path %s %s "$@"\n' "$builder/usr" "$builder/usr/lib64/ld-linux-x86-64.so.2" \
     "$builder/usr/lib/x86_64-linux-gnu" "$(readlink -f "$builder/usr/bin/python3")" >"$python"
   chmod +x "$python"
+  ln -s ../x86_64-linux-gnu "$(echo "$builder"/usr/include/python3.*[0-9])/x86_64-linux-gnu"  # where Debian's compiler looks by itself
   mkdir -p "$1".{above,work}/{release,python}
   unshare --mount bash -euc '
     checkout=$1 root=$2 python=$3 out=$4
@@ -60,8 +61,8 @@ make_with_another_python() {  # ROOT OUT
         "$checkout/build/$part"
     done
     cd "$checkout"
-    cmake --preset release -DDMISE_ENGINE_PYTHON="$python" >/dev/null
-    ninja -C build/release dmise_engine >/dev/null
+    cmake --preset release -DDMISE_ENGINE_PYTHON="$python"
+    ninja -C build/release dmise_engine
     build/engine-venv/bin/python launch/package/wheel.py build/release "$out"' _ "$checkout" "$1" "$python" "$2"
 }
 
