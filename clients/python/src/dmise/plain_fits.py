@@ -25,7 +25,7 @@ def fits_of(image: Any, header: Any) -> bytes:
 
     A masked pixel has no value, as one that is NaN.
     """
-    pixels = np.asarray(image.astype(np.float64).filled(np.nan) if isinstance(image, np.ma.MaskedArray) else image)
+    pixels = np.asarray(np.ma.filled(image.astype(np.float64), np.nan) if isinstance(image, np.ma.MaskedArray) else image)
     if pixels.ndim != 2 or pixels.size == 0 or pixels.size > MOST_PIXELS:
         raise InputError(f"image: must have rows and columns, and at most 2^32 pixels, got shape {pixels.shape}")
     kind = pixels.dtype.str[1:]
