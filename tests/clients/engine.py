@@ -380,7 +380,9 @@ class Frames(unittest.TestCase):
         self.assertTrue({("sky", "off"), ("budget", "draft")} <= {(row["effect"], row["level"]) for row in found["rows"]})
 
     def test_visible_and_score_are_the_commands(self):
+        before = sorted(os.listdir())
         passes = dmise.visible(self.path)
+        self.assertEqual(sorted(os.listdir()), before, "nothing is left in the directory that one is in")
         self.assertTrue(passes and all("sensor" in one for one in passes))
         self.assertIn("sensors", dmise.score(self.run_directory))
 
