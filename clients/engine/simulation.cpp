@@ -22,6 +22,8 @@
 #include "core/config/yaml_reader.h"
 #include "core/detection/detection_json.h"
 #include "core/image/fits_file.h"
+#include "core/image/picture.h"
+#include "core/pictures/picture_file.h"
 #include "core/plan/plan_json.h"
 #include "core/time/iso8601.h"
 #include "launch/run_directory.h"
@@ -76,6 +78,15 @@ class MadeFrame {
       const FlagImage& flags = products().flags;
       bytes = encode_frame(products().counts, products().header,
                            flags.pixels.empty() ? nullptr : &flags);
+    }
+    return nb::bytes(bytes.data(), bytes.size());
+  }
+  /// The picture of a run, for display.
+  nb::bytes png() const {
+    std::string bytes;
+    {
+      nb::gil_scoped_release without;
+      bytes = encode_picture(preview(products().counts).picture, "png");
     }
     return nb::bytes(bytes.data(), bytes.size());
   }
@@ -217,6 +228,7 @@ void add_frame(nb::module_& module) {
       .def("stars", [](const MadeFrame& frame) { return layer_of(frame, frame.stars()); })
       .def("cards", &MadeFrame::cards)
       .def("fits", &MadeFrame::fits)
+      .def("png", &MadeFrame::png)
       .def("detections", &MadeFrame::detections)
       .def("truths", &MadeFrame::truths)
       .def("report", &MadeFrame::report)

@@ -37,6 +37,7 @@ _NAMES = {
     "records": "ArrayLike Detection FrameReport Record Task Track Truth Wcs WcsRefraction",
     "replayer": "Replay",
     "runs": "Run open_run",
+    "scenario_text": "to_yaml",
     "sight": "LineOfSight line_of_sight",
     "simulation": "SimulatedFrame Simulation",
     "solution": "Solution detect solve",
@@ -45,7 +46,7 @@ _NAMES = {
     "world": "EarthOrientation EnvironmentState ObjectInfo ObjectRoster ObjectStates SiteState SunTrackingPanel",
 }
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names.split()}
-_MODULES = {"aio", "datasets"}
+_MODULES = {"aio", "datasets", "scenario"}
 __all__ = sorted({*_MODULE_OF, *_MODULES})
 
 

@@ -1,4 +1,4 @@
-from . import aio as aio, datasets as datasets
+from . import aio as aio, datasets as datasets, scenario as scenario
 from .commands import check as check, score as score, survey as survey, tradeoff as tradeoff, visible as visible
 from .dynamics import apparent_direction as apparent_direction, pole_of as pole_of
 from .errors import EngineError as EngineError, InputError as InputError, NoAnswer as NoAnswer, Refused as Refused
@@ -21,6 +21,7 @@ from .records import ArrayLike as ArrayLike, Detection as Detection, FrameReport
 from .records import Task as Task, Track as Track, Truth as Truth, Wcs as Wcs, WcsRefraction as WcsRefraction
 from .replayer import Replay as Replay
 from .runs import Run as Run, open_run as open_run
+from .scenario_text import to_yaml as to_yaml
 from .sight import LineOfSight as LineOfSight, line_of_sight as line_of_sight
 from .simulation import SimulatedFrame as SimulatedFrame, Simulation as Simulation
 from .solution import Solution as Solution, detect as detect, solve as solve

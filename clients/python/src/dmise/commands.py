@@ -31,7 +31,9 @@ def check(scenario: Scenario, **options: Any) -> dict[str, Any]:
 
 def visible(scenario: Scenario, **options: Any) -> list[dict[str, Any]]:
     """Passes of objects through the sensors' fields."""
-    return [json.loads(line) for line in _printed("visible", scenario, jsonl=True, **options).splitlines()]
+    with tempfile.TemporaryDirectory() as directory:
+        lines = _printed("visible", scenario, jsonl=True, **{"out": directory, **options}).splitlines()
+        return [json.loads(line) for line in lines]
 
 
 def survey(scenario: Scenario, **options: Any) -> dict[str, Any]:
