@@ -191,7 +191,7 @@ void DatasetDirectory::require_tasks(const DatasetTask& task) const {
 }
 
 DatasetDirectory::Content DatasetDirectory::content() const {
-  const std::string mark = "\"digest\":\"" + plan_.digest + "\"";
+  const std::string mark = head(plan_);
   const std::pair manifest{path_ + "/dataset.json", Content::same_complete};
   const std::pair plan{part("plan.json"), Content::same_unfinished};
   // The manifest again: another process may have written it and removed the plan meanwhile.
