@@ -16,6 +16,7 @@
 #include "launch/commands.h"
 #include "launch/dataset_digest.h"
 #include "launch/dataset_directory.h"
+#include "launch/dataset_growth.h"
 #include "launch/progress.h"
 #include "launch/worker_processes.h"
 #include "nodes/runtime/process/event.h"
@@ -196,6 +197,7 @@ void dataset(const DatasetOptions& options) {
                 options.seeds.c_str());
     return;
   }
+  if (!options.force) plan = grown_plan(options.out, plan);
   DatasetDirectory directory(options.out, plan);
   if (!directory.begin(task, options.force)) {
     std::printf("%s contains this data set, complete; --force repeats it\n", options.out.c_str());
@@ -219,7 +221,7 @@ void add_dataset_command(CLI::App& app) {
       "dataset",
       "Makes labelled frames of a scenario whose values are drawn for each seed, as tar archives "
       "for WebDataset (docs/datasets.md). The bytes depend on scenario, seeds and --per-shard "
-      "alone; stopped, the same command continues");
+      "alone; stopped, the same command continues; with more seeds it adds them");
   command->add_option("scenario", options->scenario, "scenario (YAML) with distributions")
       ->required();
   command->add_option("--seeds", options->seeds, "A..B, one sample each")->required();

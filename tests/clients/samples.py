@@ -93,6 +93,25 @@ class Samples(unittest.TestCase):
         with self.assertRaisesRegex(dmise.ScenarioError, "sensors"):
             map_seed(mapping, 1)
 
+    def test_the_number_of_objects_is_drawn(self):
+        """A choice among lists, one of which is empty: images with none, one and two."""
+        fixed = SCENARIO[:SCENARIO.index("  - name: east")].replace("{uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}",
+                                                                    "2018-01-21T03:00:00Z").replace("{uniform: [25, 40]}", "33")
+        alone = "{catalogue: demo, only: [GOES 13], radius_m: 3}"
+        simulated = fixed.replace("{log_uniform: [1, 8]}\n", "4\n").replace("{one_of: [GOES 13, GOES 14]}", "GOES 13")
+        simulated = simulated.replace("{normal: {mean: 6, sigma: 1, min: 3}}", "6").replace("{integers: [90, 110]}", "100")
+        report = next(dmise.Simulation(simulated.replace("{log_uniform: [1, 8]}", "3")).frames()).report
+        there = f"{{ra_deg: {np.degrees(report.boresight_ra_rad)}, dec_deg: {np.degrees(report.boresight_dec_rad)}, tracking: fixed}}"
+        lists = f"{{one_of: [[], [{alone}], [{alone}, {{name: twin, radius_m: 3, motion: {{fixed: {{gcrs_m: [-4e7, 1e7, 0]}}}}}}]]}}"
+        drawn = fixed.replace("[{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]", lists)
+        drawn = drawn.replace("{target: {one_of: [GOES 13, GOES 14]}, tracking: fixed}", there)
+        made = [sample for sample in stream(drawn, range(1, 13)) if sample.labels["frame"] == 1]
+        self.assertEqual({int(sample.labels["drawn"]["objects.one_of"]) for sample in made}, {0, 1, 2})
+        for sample in made:
+            names = [found["name"] for found in sample.objects]
+            self.assertEqual(names, [] if sample.labels["drawn"]["objects.one_of"] == 0 else ["GOES 13"])
+            self.assertEqual(bool(sample.mask.any()), bool(names))
+
     def test_a_scenario_that_changes_is_read_again(self):
         path = self.path.with_name("changing.yaml")
         path.write_text(SCENARIO)
