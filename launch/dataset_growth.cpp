@@ -34,8 +34,8 @@ class CocoLines {
   /// The line; empty after the last.
   const std::string& line() const { return line_; }
   void next() {
-    if (!std::getline(lines_, line_) || !line_.starts_with("{")) line_.clear();
-    if (line_.ends_with(",")) line_.pop_back();
+    if (!std::getline(lines_, line_) || !line_.starts_with('{')) line_.clear();
+    if (line_.ends_with(',')) line_.pop_back();
   }
   std::uint64_t number(std::string_view field) const {
     const std::size_t at = line_.find(field);

@@ -34,8 +34,6 @@ class Maker {
   explicit Maker(ScenarioDraws draws)
       : draws_(std::move(draws)), digest_(dataset_digest(draws_)), maker_(digest_) {}
 
-  const std::string& digest() const { return digest_; }
-
   /// Frames by sensor and number.
   std::vector<Labelled> make(std::uint64_t seed) {
     const DrawnScenario sample = draws_.draw(seed);
@@ -82,22 +80,19 @@ nb::list samples_of(const Samples& samples, std::uint64_t seed) {
   return list;
 }
 
+/// Reads what determines the samples, without the interpreter's lock.
+template <class... Source>
+Samples samples_from(const Source&... source) {
+  const nb::gil_scoped_release without;
+  return of_scenario([&] { return Samples{std::make_shared<Maker>(ScenarioDraws(source...))}; });
+}
+
 }  // namespace
 
 void add_samples(nb::module_& module) {
   nb::class_<Samples>(module, "Samples")
-      .def_static("of_file",
-                  [](const std::string& path) {
-                    return of_scenario(
-                        [&] { return Samples{std::make_shared<Maker>(ScenarioDraws(path))}; });
-                  })
-      .def_static("of_text",
-                  [](const std::string& text, const std::string& name) {
-                    return of_scenario([&] {
-                      return Samples{std::make_shared<Maker>(ScenarioDraws(text, name))};
-                    });
-                  })
-      .def_prop_ro("digest", [](const Samples& samples) { return samples.maker->digest(); })
+      .def_static("of_file", &samples_from<std::string>)
+      .def_static("of_text", &samples_from<std::string, std::string>)
       .def("make", &samples_of);
 }
 

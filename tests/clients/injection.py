@@ -118,6 +118,20 @@ class Injections(unittest.TestCase):
         self.assertLess(np.abs(mirrored.light[::-1] - straight.light).max(), 0.01 * straight.light.max())
         self.assertAlmostEqual(mirrored.labels["start_y_px"][0], 63.0 - straight.labels["start_y_px"][0], delta=0.01)
 
+    def test_the_frames_stars_tell_the_zero_point(self):
+        """A frame whose header tells no zero point: light as of the rendered object to 3 %, at the place by the solved plate."""
+        wide = WITH.replace("columns: 96, rows: 64", "columns: 400, rows: 300").replace("focal_length_m: 0.2", "focal_length_m: 0.05")
+        rendered = next(dmise.Simulation(wide).frames())
+        empty = next(dmise.Simulation(wide.replace("radius_m: 2", "radius_m: 1e-4")).frames())
+        truth = rendered.truth[rendered.truth["in_frame"]][0]
+        header = {key: value for key, value in wcs_cards(empty).items() if not key.startswith(("A_", "B_", "AP_", "BP_"))}
+        header |= {"CTYPE1": "RA---TAN", "CTYPE2": "DEC--TAN", "GAIN": 2.0}
+        made = dmise.inject(empty.counts, header, wide, seed=7)
+        self.assertAlmostEqual(made.labels["signal_e"][0] / truth["rendered_signal_e"], 1.0, delta=0.03)
+        self.assertAlmostEqual(made.labels["x_px"][0], truth["rendered_x_px"], delta=0.1)
+        self.assertAlmostEqual(made.labels["y_px"][0], truth["rendered_y_px"], delta=0.1)
+        self.assertAlmostEqual(made.facts["psf_fwhm_px"], 2.0, delta=0.2)
+
     def test_light_follows_the_zero_point(self):
         bright, faint = (dmise.inject(self.empty.counts, self.cards, WITH, **(STATED | {"zero_point_mag": zero_point}))
                          for zero_point in (21.0, 18.5))
