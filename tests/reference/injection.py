@@ -136,7 +136,7 @@ def is_found(detections, x, y):
 
 
 def probabilities(number):
-    """Of objects of two brightnesses: rendered, and injected into frames without them, with the same skies."""
+    """Of streaks of 13 px at two brightnesses: rendered, and injected into frames without them, with the same skies."""
     site = (33.0, -100.0, 300.0)
     pointing = "{target: GOES 14, tracking: sidereal}"
     only = "{{catalogue: demo, only: [GOES 14], radius_m: {}}}"
