@@ -3,7 +3,8 @@
     for frame in dmise.Simulation("night.yaml").frames("west"):
         print(frame.counts.mean(), frame.detections["magnitude"])
 
-`Simulation` makes frames as arrays; `detect` and `solve` read frames of any camera, `propagate` moves a catalogue;
+`Simulation` makes frames as arrays; `detect` and `solve` read frames of any camera, `inject` draws objects into them,
+`propagate` moves a catalogue;
 `check`, `score`, `survey`, `tradeoff` and `visible` are commands. `subscribe` observes a run, `aio.subscribe` does so
 in asyncio, `Node` takes part in its clock, `actor` and `serve` move objects in it, `detector` finds sources in its
 frames, `sensor` observes, `tracker` makes the tracks, `open_run` reads the directory of a run that is over, `datasets`
@@ -23,6 +24,7 @@ _NAMES = {
     "dynamics": "apparent_direction pole_of",
     "errors": "EngineError InputError NoAnswer Refused RunFailed ScenarioError",
     "frame_images": "Frame Frames frames read_frame",
+    "injection": "Injected inject",
     "message": "Message",
     "node": "Node Tick",
     "orbit_fit": "Orbit Triangulated fit_orbit triangulate",

@@ -4,6 +4,7 @@ from .dynamics import apparent_direction as apparent_direction, pole_of as pole_
 from .errors import EngineError as EngineError, InputError as InputError, NoAnswer as NoAnswer, Refused as Refused
 from .errors import RunFailed as RunFailed, ScenarioError as ScenarioError
 from .frame_images import Frame as Frame, Frames as Frames, frames as frames, read_frame as read_frame
+from .injection import Injected as Injected, inject as inject
 from .message import Message as Message
 from .node import Node as Node, Tick as Tick
 from .orbit_fit import Orbit as Orbit, Triangulated as Triangulated, fit_orbit as fit_orbit, triangulate as triangulate
