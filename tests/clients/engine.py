@@ -471,7 +471,8 @@ class Frames(unittest.TestCase):
             timer = threading.Timer(0.5, lambda: (sent.append(time.monotonic()), os.kill(os.getpid(), signal.SIGINT)))
             timer.start()
             with self.assertRaises(KeyboardInterrupt):
-                work()
+                while not sent or time.monotonic() < sent[0] + 60:  # a quick machine needs several calls
+                    work()
             self.assertLess(time.monotonic() - sent[0], 1.0)
             self.assertTrue(dmise.engine.core.wait_for_detached(60.0))
 
