@@ -69,10 +69,15 @@ class Program:
         return own_node_pb2.OwnNodeAnswer.FromString(frames[0]), frames[1:]
 
     def ask(self, ticks):
+        """Until the program has ended, for nobody hears the rest."""
         for tick in ticks:
             step = own_node_pb2.OwnNodeStep(tick=tick, time_ns=tick * 10**9, give_checkpoint=tick % 64 == 63)
             environment = environment_pb2.EnvironmentState(tick=tick, time_ns=tick * 10**9)
-            self.socket.send_multipart([own_node_pb2.OwnNodeRequest(step=step).SerializeToString(), environment.SerializeToString()])
+            frames = [own_node_pb2.OwnNodeRequest(step=step).SerializeToString(), environment.SerializeToString()]
+            try:
+                self.socket.send_multipart(frames, zmq.NOBLOCK)
+            except zmq.Again:
+                return
 
     def heard(self):
         """What it says until it has answered all steps or failed: ticks, "alive" and what failed."""
