@@ -158,7 +158,7 @@ check_own_node() {
 # Programs in all four roles die, one is stopped, and the container of the one that moves the object is killed: another stands in.
 # In the reference all have had their deaths.
 check_own_deaths() {
-  local began=$SECONDS lived=$work/lived master
+  local began=$SECONDS lived=$work/lived
   local -x DMISE_SCENARIO=roles.yaml DMISE_KEYS=$work/roles-keys DMISE_FLAGS=--allow-programs
   mkdir "$lived"
   printf x | tee "$lived"/{gnc,peaks-ground,laser,mine} >/dev/null
@@ -168,18 +168,26 @@ check_own_deaths() {
   docker cp roles:/products "$work/roles-reference" >/dev/null
   docker rm -fv roles >/dev/null
   make_keys
-  compose up --no-color -d --scale sensor=2 --scale own-node=2 >"$work/up.log" 2>&1 || die "compose up: $(tail -n 30 "$work/up.log")"
-  master=$(container_of time-master)
+  begin_run --scale sensor=2 --scale own-node=2
   wait_until 120 "the death of the program of gnc" mover
   docker kill "$(mover)" >/dev/null
-  wait_until 300 "the end of the run" is_over "$master"
-  compose logs --no-color >"$work/up.log" 2>&1
-  [[ $(docker inspect -f '{{.State.ExitCode}}' "$master") == 0 ]] || die "roles: $(tail -n 30 "$work/up.log")"
+  end_run 0
   (($(grep -c 'was restarted' "$work/up.log") >= 4)) || die "not every program was restarted: $(grep restarted "$work/up.log")"
-  docker cp "$master:/products" "$work/roles" >/dev/null
+  docker cp "$(container_of time-master):/products" "$work/roles" >/dev/null
   same_products "$work/roles-reference" "$work/roles" 10 "compose whose programs and container died ($((SECONDS - began)) s)"
   compose down --volumes --timeout 1 >/dev/null 2>&1
 }
+
+# A run in the background, for compose itself would end all with the first container that ends; its end with this exit code. The logs
+# are in up.log then.
+begin_run() { compose up --no-color -d "$@" >"$work/up.log" 2>&1 || die "compose up: $(tail -n 30 "$work/up.log")"; }
+end_run() {
+  wait_until 300 "the end of the run" is_over
+  compose logs --no-color >"$work/up.log" 2>&1
+  [[ $(of_master ExitCode) == "$1" ]] || die "exit code $(of_master ExitCode) of the run, not $1: $(tail -n 30 "$work/up.log")"
+}
+is_over() { [[ $(of_master Status) == exited ]]; }
+of_master() { docker inspect -f "{{.State.$1}}" "$(container_of time-master)"; }
 
 # The container whose program has moved the object, and has been restarted.
 mover() {
@@ -189,17 +197,15 @@ mover() {
   done
   return 1
 }
-is_over() { [[ $(docker inspect -f '{{.State.Status}}' "$1") == exited ]]; }
 
 # What a program says wrongly ends the run with node, tick and reason.
 check_own_fault() {
-  local code=0
   local -x DMISE_SCENARIO=fault.yaml DMISE_KEYS=$work/fault-keys DMISE_FLAGS=--allow-programs
   sed 's/run: .*/run: [python3, own_actor\/wrong.py], options: {fault: nan, at: 1}}]/' "$DMISE_SCENARIOS/own.yaml" >"$DMISE_SCENARIOS/fault.yaml"
   make_keys
-  compose up --no-color --scale sensor=3 --exit-code-from time-master >"$work/fault.log" 2>&1 || code=$?
-  ((code == 1)) || die "exit code $code of a run whose program says NaN: $(tail -n 20 "$work/fault.log")"
-  grep -q 'gnc: tick 1: .*position_m' "$work/fault.log" || die "the reason is not told: $(tail -n 20 "$work/fault.log")"
+  begin_run --scale sensor=3
+  end_run 1
+  grep -q 'gnc: tick 1: .*position_m' "$work/up.log" || die "the reason is not told: $(tail -n 20 "$work/up.log")"
   compose down --volumes --timeout 1 >/dev/null 2>&1
   say "ok: NaN of a program ends the run of containers with node, tick and reason"
 }
