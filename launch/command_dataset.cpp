@@ -6,20 +6,18 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <set>
 
-#include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/text_fields.h"
 #include "core/base/text_file.h"
-#include "core/base/version.h"
 #include "core/config/scenario_draws.h"
 #include "launch/commands.h"
+#include "launch/dataset_digest.h"
 #include "launch/dataset_directory.h"
+#include "launch/dataset_growth.h"
 #include "launch/progress.h"
-#include "launch/run_directory.h"
 #include "launch/worker_processes.h"
 #include "nodes/runtime/process/event.h"
 
@@ -71,40 +69,6 @@ DatasetPlan plan_of(const DatasetOptions& options, const std::string& scenario_t
   return plan;
 }
 
-/// Reads the scenario at the ends and with all choices of its distributions. Returns the SHA-256 of
-/// what determines the bytes: presets and catalogues are those that the choices name.
-std::string digest_of(const DatasetPlan& plan, const ScenarioDraws& draws) {
-  Sha256 sha;
-  sha.update(software_name() + "\n" + std::to_string(plan.first_seed) + ".." +
-             std::to_string(plan.last_seed) + "/" + std::to_string(plan.seeds_per_shard) + "\n" +
-             plan.scenario_text);
-  std::set<std::string> files;
-  draws.check_ends([&](const Scenario& scenario) {
-    sha.update("\n" + physics_json(scenario));
-    for (const auto& path : files_of(scenario.objects, scenario.own_objects)) files.insert(path);
-    files.insert(scenario.star_catalogue_path);
-    files.insert(scenario.earth_orientation_path);
-  });
-  for (const auto& path : files)
-    if (!path.empty()) sha.update("\n" + file_digest(path));
-  return sha.hex().substr(0, 32);
-}
-
-void check_output(const Scenario& scenario) {
-  const OutputConfig& output = scenario.output;
-  const char* unknown = output.fits_rice                                      ? "fits.compression"
-                        : output.saturation                                   ? "saturation"
-                        : output.radiance_exr                                 ? "radiance_exr"
-                        : output.sources || output.background || output.noise ? "planes"
-                        : output.star_truth                                   ? "star_truth"
-                        : output.positions()                                  ? "positions"
-                                                                              : nullptr;
-  if (unknown)
-    throw ConfigError(scenario.path + ": output." + unknown + ": is for runs, not for data sets");
-  if (scenario.fusion)
-    throw ConfigError(scenario.fusion->where + ": is for runs, not for data sets");
-}
-
 /// Reads the scenario of every seed of this task, so that errors are found before the first frame.
 void check_seeds(const DatasetPlan& plan, const DatasetTask& task, const ScenarioDraws& draws,
                  SampleMaker& maker) {
@@ -115,7 +79,7 @@ void check_seeds(const DatasetPlan& plan, const DatasetTask& task, const Scenari
       return std::string(e.what()) + " (as drawn for seed " + std::to_string(seed) + ")";
     };
     try {
-      check_output(scenario);
+      check_output_of_dataset(scenario);
       maker.prepare(scenario);
     } catch (const ConfigError& e) {
       throw ConfigError(as_drawn(e));
@@ -225,7 +189,7 @@ void dataset(const DatasetOptions& options) {
   const DatasetTask task = task_of(options);
   const ScenarioDraws draws(options.scenario);
   DatasetPlan plan = plan_of(options, draws.text());
-  plan.digest = digest_of(plan, draws);
+  plan.digest = dataset_digest(draws);
   SampleMaker maker(plan.digest);
   check_seeds(plan, task, draws, maker);
   if (options.check) {
@@ -233,6 +197,7 @@ void dataset(const DatasetOptions& options) {
                 options.seeds.c_str());
     return;
   }
+  if (!options.force) plan = grown_plan(options.out, plan);
   DatasetDirectory directory(options.out, plan);
   if (!directory.begin(task, options.force)) {
     std::printf("%s contains this data set, complete; --force repeats it\n", options.out.c_str());
@@ -256,7 +221,7 @@ void add_dataset_command(CLI::App& app) {
       "dataset",
       "Makes labelled frames of a scenario whose values are drawn for each seed, as tar archives "
       "for WebDataset (docs/datasets.md). The bytes depend on scenario, seeds and --per-shard "
-      "alone; stopped, the same command continues");
+      "alone; stopped, the same command continues; with more seeds it adds them");
   command->add_option("scenario", options->scenario, "scenario (YAML) with distributions")
       ->required();
   command->add_option("--seeds", options->seeds, "A..B, one sample each")->required();

@@ -20,6 +20,7 @@
 #include "core/base/whole_file.h"
 #include "core/dataset/tar.h"
 #include "launch/commands.h"
+#include "launch/dataset_growth.h"
 #include "nodes/runtime/process/event.h"
 #include "sensors/dataset/frame_labels.h"
 
@@ -67,26 +68,12 @@ bool is_part(const std::string& name) {
          is_numbered(name, "dataset-", 6, {".json", ".coco"});
 }
 
-std::string head(const DatasetPlan& plan) {
-  JsonWriter json;
-  json.begin_object().field("software", software_name()).field("digest", plan.digest);
-  json.field("scenario", "scenario.yaml")
-      .list("seeds", std::array{plan.first_seed, plan.last_seed});
-  return json.field("seeds_per_shard", plan.seeds_per_shard).take();
-}
-
 /// Of plan.json: in how many tasks the data set is made.
 std::string tasks_field(std::uint64_t tasks) { return ",\"tasks\":" + std::to_string(tasks); }
-
-constexpr std::size_t any_size = std::size_t(1) << 40;  // of a file
-constexpr std::string_view image_mark = "image ", annotation_mark = "annotation ";
 
 std::string sample_name(std::uint64_t seed, const char* ending) {
   return "sample-" + std::to_string(seed) + ending;
 }
-
-/// First line of the text files of parts.
-std::string digest_line(const DatasetPlan& plan) { return "dataset " + plan.digest + "\n"; }
 
 /// Second line of the text file of a sample, of what its archive holds.
 std::string members_line(std::string_view members) {
@@ -158,9 +145,11 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
   if (!force && is_complete()) return false;
   if (alone) {
     make_directories(path_ + "/parts");
+    if (!force && content() == Content::fewer_complete) reopen();
     // First the plan: it tells that the other files are ours.
-    write_file_whole(part("plan.json"), head(plan_) + tasks_field(task.count) + "}\n");
+    write_file_whole(part("plan.json"), dataset_head(plan_) + tasks_field(task.count) + "}\n");
     write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
+    remove_file(path_ + "/dataset.json");  // of fewer seeds
     lock_->take(directory_byte, FileLock::Use::shared);
   } else {
     require_tasks(task);
@@ -191,13 +180,16 @@ void DatasetDirectory::require_tasks(const DatasetTask& task) const {
 }
 
 DatasetDirectory::Content DatasetDirectory::content() const {
-  const std::string mark = "\"digest\":\"" + plan_.digest + "\"";
-  const std::pair manifest{path_ + "/dataset.json", Content::same_complete};
-  const std::pair plan{part("plan.json"), Content::same_unfinished};
+  const std::string manifest = path_ + "/dataset.json", plan = part("plan.json");
   // The manifest again: another process may have written it and removed the plan meanwhile.
-  for (const auto& [path, same] : {manifest, plan, manifest}) {
+  for (const std::string& path : {manifest, plan, manifest}) {
     if (!path_exists(path)) continue;
-    if (read_text_file(path).find(mark) != std::string::npos) return same;
+    const auto there = recorded_plan(read_text_file(path, any_size), plan_);
+    const bool same = there && dataset_head(*there) == dataset_head(plan_);
+    if (same) return path == plan ? Content::same_unfinished : Content::same_complete;
+    if (there && path == manifest && there->seeds_per_shard == plan_.seeds_per_shard &&
+        there->first_seed == plan_.first_seed && there->last_seed < plan_.last_seed)
+      return Content::fewer_complete;
     throw ConfigError(path_ +
                       ": contains another data set; --force replaces it, --out writes elsewhere");
   }
@@ -238,11 +230,25 @@ void DatasetDirectory::remove_parts() const {
     fs::remove(path_ + "/parts", ignored);  // if it is empty
 }
 
+void DatasetDirectory::reopen() const {
+  const auto old = recorded_plan(read_text_file(path_ + "/dataset.json", any_size), plan_);
+  if (!old) return;
+  require_files(*old);
+  remove_parts();
+  make_directories(path_ + "/parts");
+  restore_parts(path_, *old);
+}
+
 bool DatasetDirectory::is_complete() const {
   if (content() != Content::same_complete) return false;
+  require_files(plan_);
+  return true;
+}
+
+void DatasetDirectory::require_files(const DatasetPlan& plan) const {
   const std::string manifest = read_text_file(path_ + "/dataset.json", any_size);
   std::vector<std::string> names{"coco.json"};
-  for (std::size_t shard = 0; shard < plan_.shards(); ++shard) names.push_back(shard_name(shard));
+  for (std::size_t shard = 0; shard < plan.shards(); ++shard) names.push_back(shard_name(shard));
   std::size_t read = 0;  // of the manifest, which has the names in this order
   for (const std::string& name : names) {
     const std::int64_t size = size_of(path_ + "/" + name), wanted = size_by(manifest, name, read);
@@ -252,7 +258,6 @@ bool DatasetDirectory::is_complete() const {
                       ", by dataset.json it has " + std::to_string(wanted) +
                       "; --force makes all anew");
   }
-  return true;
 }
 
 bool DatasetDirectory::has_shard(std::size_t shard) const {
@@ -369,7 +374,7 @@ std::size_t DatasetDirectory::finish() {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   if (content() != Content::same_complete) {
-    std::string text = head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
+    std::string text = dataset_head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
     for (std::size_t shard = 0; shard < plan_.shards(); ++shard)
       text += (shard > 0 ? ",\n" : "\n") + read_text_file(part(shard_name(shard, ".json")));
     write_file_whole(path_ + "/dataset.json", text + "\n]}\n");

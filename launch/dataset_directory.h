@@ -39,7 +39,8 @@ class DatasetDirectory {
   /// Throws `Error` "PATH: reason" if it can't be made.
   DatasetDirectory(std::string path, DatasetPlan plan);
 
-  /// Begins or continues the work of a task, which is locked for the lifetime of this object.
+  /// Begins or continues the work of a task, which is locked for the lifetime of this object. A
+  /// complete data set of the first of the seeds is kept and grows (`grown_plan`).
   /// `force` removes a data set, and files with the names of one. Returns false if this data set is
   /// complete. Throws `ConfigError` if there are files of another or of none, or other processes
   /// work on the same task, with another number of tasks or, with `force`, at all; and if files of
@@ -59,7 +60,8 @@ class DatasetDirectory {
   std::size_t finish();
 
  private:
-  enum class Content { nothing, same_unfinished, same_complete };
+  // `fewer_complete`: a complete data set of the first of these seeds.
+  enum class Content { nothing, same_unfinished, same_complete, fewer_complete };
 
   std::string part(const std::string& name) const { return path_ + "/parts/" + name; }
   /// Throws `ConfigError` for files of another data set or of none.
@@ -71,9 +73,12 @@ class DatasetDirectory {
   void require_tasks(const DatasetTask& task) const;
   void clear() const;
   void remove_parts() const;
-  /// Throws as `content`, and `ConfigError` unless all files of a complete data set have the sizes
-  /// of its manifest.
+  /// Makes a complete data set of fewer seeds an unfinished one of these.
+  void reopen() const;
+  /// Throws as `content`, and as `require_files`.
   bool is_complete() const;
+  /// Throws `ConfigError` unless all files of a complete data set have the sizes of its manifest.
+  void require_files(const DatasetPlan& plan) const;
   std::string lines_of(const std::string& part_name) const;
   std::string write_coco() const;
 

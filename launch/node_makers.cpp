@@ -52,9 +52,10 @@ std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts&
       .error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()};
   SourceFinder finder = std::move(parts.replayed.finders[node]);
   if (!finder) finder = own_finder(parts.scenario, node, parts.directory, settings);
+  ExposureObserver observer = std::move(parts.replayed.observers[node]);
+  if (!observer) observer = own_observer(parts.scenario, node, parts.directory, settings);
   return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
-                     parts.threads, std::move(finder),
-                     own_observer(parts.scenario, node, parts.directory, settings));
+                     parts.threads, std::move(finder), std::move(observer));
 }
 
 std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {

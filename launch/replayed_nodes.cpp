@@ -6,7 +6,7 @@
 #include "core/base/printable.h"
 #include "launch/make_fusion.h"
 #include "nodes/own/recorded_actor.h"
-#include "nodes/own/recorded_detector.h"
+#include "nodes/own/recorded_sensor.h"
 #include "sensors/pipeline/frame_times.h"
 
 namespace dmise {
@@ -19,9 +19,6 @@ std::map<std::string, std::string> recordings_of(const std::vector<std::string>&
     const auto node = std::ranges::find(scenario.own_nodes, name, &OwnNode::name);
     if (name == one || node == scenario.own_nodes.end())
       throw ConfigError("--replay-node: must be NODE=FILE with a node of `nodes`, got " +
-                        printable(one));
-    if (node->role == OwnNodeRole::sensor)
-      throw ConfigError("--replay-node: " + name + " is a sensor, which is not replayed, got " +
                         printable(one));
     recordings[name] = one.substr(name.size() + 1);
   }
@@ -47,10 +44,14 @@ ReplayedNodes replayed_nodes(const std::map<std::string, std::string>& recording
       nodes.actors[name] = std::make_unique<RecordedActor>(scenario, name, digest, path);
     if (node.role == OwnNodeRole::tracker)
       nodes.tracker = make_recorded_tracker(scenario, digest, path);
-    for (const SensorConfig& sensor : scenario.sensors)
+    for (const SensorConfig& sensor : scenario.sensors) {
+      const RecordedSensor recorded{scenario, sensor.name, frames_due(sensor, scenario), digest,
+                                    path};
       if (sensor.detector && sensor.detector->node == name)
-        nodes.finders[sensor.name] =
-            recorded_finder(scenario, sensor.name, frames_due(sensor, scenario), digest, path);
+        nodes.finders[sensor.name] = recorded_finder(recorded);
+      if (sensor.observing && sensor.observing->node == name)
+        nodes.observers[sensor.name] = recorded_observer(recorded);
+    }
   }
   return nodes;
 }

@@ -6,6 +6,7 @@
 
 #include "core/config/scenario.h"
 #include "core/detection/described_sources.h"
+#include "core/sim/exposure_observer.h"
 #include "core/sim/participant.h"
 
 namespace dmise {
@@ -16,6 +17,7 @@ class Tracker;
 struct ReplayedNodes {
   std::map<std::string, std::unique_ptr<Participant>> actors;  // by node
   std::map<std::string, SourceFinder> finders;                 // by sensor
+  std::map<std::string, ExposureObserver> observers;           // by sensor
   std::shared_ptr<Tracker> tracker;
 };
 

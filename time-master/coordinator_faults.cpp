@@ -65,7 +65,7 @@ void Coordinator::fail(const std::string& name, const std::string& reason) {
   if (options_.on_silent == SilentPolicy::drop && member->keeps_time && phase_ == Phase::running)
     drop(*member, member->pulse.heard);
   else
-    fail_run(name + ": " + reason);
+    fail_run(reason.starts_with(name + ": ") ? reason : name + ": " + reason);
 }
 
 void Coordinator::check(Instant now) {

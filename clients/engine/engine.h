@@ -35,5 +35,6 @@ inline int checked_threads(int threads) {
 void add_simulation(nanobind::module_& module);
 void add_frames_of_cameras(nanobind::module_& module);
 void add_catalogues(nanobind::module_& module);
+void add_samples(nanobind::module_& module);
 
 }  // namespace dmise

@@ -48,4 +48,5 @@ NB_MODULE(_engine, module) {
   dmise::add_simulation(module);
   dmise::add_frames_of_cameras(module);
   dmise::add_catalogues(module);
+  dmise::add_samples(module);
 }

@@ -15,13 +15,17 @@
 #include "clients/engine/arrays.h"
 #include "clients/engine/engine.h"
 #include "clients/engine/interruptible.h"
+#include "clients/engine/like_frame.h"
 #include "core/base/json.h"
 #include "core/config/distribution.h"
 #include "core/config/make_clock.h"
 #include "core/config/own_node_config.h"
+#include "core/config/scenario_draws.h"
 #include "core/config/yaml_reader.h"
 #include "core/detection/detection_json.h"
 #include "core/image/fits_file.h"
+#include "core/image/picture.h"
+#include "core/pictures/picture_file.h"
 #include "core/plan/plan_json.h"
 #include "core/time/iso8601.h"
 #include "launch/run_directory.h"
@@ -76,6 +80,15 @@ class MadeFrame {
       const FlagImage& flags = products().flags;
       bytes = encode_frame(products().counts, products().header,
                            flags.pixels.empty() ? nullptr : &flags);
+    }
+    return nb::bytes(bytes.data(), bytes.size());
+  }
+  /// The picture of a run, for display.
+  nb::bytes png() const {
+    std::string bytes;
+    {
+      nb::gil_scoped_release without;
+      bytes = encode_picture(preview(products().counts).picture, "png");
     }
     return nb::bytes(bytes.data(), bytes.size());
   }
@@ -134,14 +147,24 @@ class Stream {
 
 class Simulation {
  public:
-  Simulation(const YamlValue& root, std::optional<std::uint64_t> seed) {
-    refuse_distributions(root, "dmise dataset draws a value for each seed");
-    auto scenario = std::make_shared<Scenario>(read_scenario(root));
-    refuse_own_nodes(scenario->own_nodes, "the engine in Python");
-    if (seed) scenario->seed = *seed;
-    scenario->network.publish_states = false;  // as of a run in one process
-    scenario_ = std::move(scenario);
+  explicit Simulation(Scenario scenario) {
+    refuse_own_nodes(scenario.own_nodes, "the engine in Python");
+    scenario.network.publish_states = false;  // as of a run in one process
+    scenario_ = std::make_shared<const Scenario>(std::move(scenario));
     clock_ = std::make_shared<const Clock>(make_clock(*scenario_));
+  }
+  static std::unique_ptr<Simulation> of(const YamlValue& root, std::optional<std::uint64_t> seed) {
+    refuse_distributions(root, "dmise dataset draws a value for each seed");
+    Scenario scenario = read_scenario(root);
+    if (seed) scenario.seed = *seed;
+    return std::make_unique<Simulation>(std::move(scenario));
+  }
+  /// With values drawn for the seed.
+  static std::unique_ptr<Simulation> drawn(const ScenarioDraws& draws, std::uint64_t seed) {
+    return std::make_unique<Simulation>(draws.draw(seed).scenario);
+  }
+  std::unique_ptr<Simulation> like(const Likeness& frame) const {
+    return std::make_unique<Simulation>(like_frame(*scenario_, frame));
   }
 
   const Scenario& scenario() const { return *scenario_; }
@@ -216,7 +239,14 @@ void add_frame(nb::module_& module) {
       .def("sky", [](const MadeFrame& frame) { return layer_of(frame, frame.sky()); })
       .def("stars", [](const MadeFrame& frame) { return layer_of(frame, frame.stars()); })
       .def("cards", &MadeFrame::cards)
+      .def_prop_ro("wcs", [](const MadeFrame& frame) { return frame.products().header.wcs; })
+      .def_prop_ro("psf_fwhm_px",
+                   [](const MadeFrame& frame) { return frame.products().header.psf_fwhm_px; })
+      .def_prop_ro(
+          "zero_point_mag",
+          [](const MadeFrame& frame) { return frame.products().header.v_solar_zero_point_mag(); })
       .def("fits", &MadeFrame::fits)
+      .def("png", &MadeFrame::png)
       .def("detections", &MadeFrame::detections)
       .def("truths", &MadeFrame::truths)
       .def("report", &MadeFrame::report)
@@ -227,21 +257,48 @@ void add_frame(nb::module_& module) {
 
 void add_simulation(nb::module_& module) {
   add_frame(module);
+  nb::class_<Likeness>(module, "Likeness")
+      .def(nb::init<>())
+      .def_rw("sensor", &Likeness::sensor)
+      .def_rw("start_utc", &Likeness::start_utc)
+      .def_rw("exposure_s", &Likeness::exposure_s)
+      .def_rw("columns", &Likeness::columns)
+      .def_rw("rows", &Likeness::rows)
+      .def_rw("focal_length_px", &Likeness::focal_length_px)
+      .def_rw("ra_deg", &Likeness::ra_deg)
+      .def_rw("dec_deg", &Likeness::dec_deg)
+      .def_rw("roll_deg", &Likeness::roll_deg)
+      .def_rw("psf_fwhm_px", &Likeness::psf_fwhm_px)
+      .def_rw("sidereal", &Likeness::sidereal)
+      .def_rw("guided", &Likeness::guided)
+      .def_rw("extinction", &Likeness::extinction);
   nb::class_<Stream>(module, "Stream", nb::is_weak_referenceable())
       .def("next", &Stream::next)
       .def("stop", &Stream::stop);
   nb::class_<Simulation>(module, "Simulation")
       .def_static("of_file",
                   [](const std::string& path, std::optional<std::uint64_t> seed) {
-                    return of_scenario(
-                        [&] { return std::make_unique<Simulation>(YamlValue::load(path), seed); });
+                    return of_scenario([&] { return Simulation::of(YamlValue::load(path), seed); });
                   })
       .def_static(
           "of_text",
           [](const std::string& text, const std::string& name, std::optional<std::uint64_t> seed) {
-            return of_scenario(
-                [&] { return std::make_unique<Simulation>(YamlValue::parse(text, name), seed); });
+            return of_scenario([&] { return Simulation::of(YamlValue::parse(text, name), seed); });
           })
+      .def_static(
+          "drawn_of_file",
+          [](const std::string& path, std::uint64_t seed) {
+            return of_scenario([&] { return Simulation::drawn(ScenarioDraws(path), seed); });
+          })
+      .def_static(
+          "drawn_of_text",
+          [](const std::string& text, const std::string& name, std::uint64_t seed) {
+            return of_scenario([&] { return Simulation::drawn(ScenarioDraws(text, name), seed); });
+          })
+      .def("like",
+           [](const Simulation& simulation, const Likeness& frame) {
+             return of_scenario([&] { return simulation.like(frame); });
+           })
       .def("frames",
            [](Simulation& simulation, const std::vector<std::string>& sensors, int threads,
               bool layers) {

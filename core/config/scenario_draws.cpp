@@ -66,7 +66,10 @@ void check_forms(const YamlValue& value) {
 }  // namespace
 
 ScenarioDraws::ScenarioDraws(const std::string& path)
-    : path_(path), text_(read_text_file(path, YamlLimits{}.bytes)) {
+    : ScenarioDraws(read_text_file(path, YamlLimits{}.bytes), path) {}
+
+ScenarioDraws::ScenarioDraws(std::string text, std::string path)
+    : path_(std::move(path)), text_(std::move(text)) {
   check_forms(root());
 }
 

@@ -33,6 +33,8 @@ class ScenarioDraws {
  public:
   /// Reads a file. Throws `ConfigError` with the place of a distribution that is not well-formed.
   explicit ScenarioDraws(const std::string& path);
+  /// Reads a text; `path` names it in messages, and other files are found beside it.
+  ScenarioDraws(std::string text, std::string path);
 
   const std::string& text() const { return text_; }
   /// Draws all values and reads the scenario. Throws `ConfigError` "... (as drawn for seed N)".

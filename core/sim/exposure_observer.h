@@ -2,7 +2,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <variant>
+#include <vector>
 
+#include "core/products/detection.h"
+#include "core/products/frame_report.h"
 #include "core/products/own_sighting.h"
 #include "core/sim/state.h"
 
@@ -18,7 +22,15 @@ struct ObserverExposure {
   ObjectStates objects = {};             // of the roster's
 };
 
+/// Products of an exposure as they were made before.
+struct ObservedBefore {
+  FrameReport report;
+  std::vector<Detection> detections;
+};
+
+using ObservedInExposure = std::variant<Observed, ObservedBefore>;
+
 /// Observes in place of a camera; nothing: the run is being stopped.
-using ExposureObserver = std::function<std::optional<Observed>(const ObserverExposure&)>;
+using ExposureObserver = std::function<std::optional<ObservedInExposure>(const ObserverExposure&)>;
 
 }  // namespace dmise

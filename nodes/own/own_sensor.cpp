@@ -98,7 +98,7 @@ ExposureObserver own_observer(const Scenario& scenario, const std::string& senso
   if (config.is_camera()) return {};
   const auto program =
       std::make_shared<FrameProgram>(scenario, config, directory, std::move(settings));
-  return [program, &config](const ObserverExposure& exposure) {
+  return [program, &config](const ObserverExposure& exposure) -> std::optional<ObservedInExposure> {
     const auto request = request_of(config.name, exposure, program->tick_after(exposure.end));
     const std::vector<std::string> world = world_of(exposure);
     return program->ask(

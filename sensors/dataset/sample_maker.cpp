@@ -16,15 +16,18 @@
 namespace dmise {
 namespace {
 
-/// Collects the frames of one sensor.
+/// Labels the frames of one sensor.
 class SensorFrames {
  public:
-  SensorFrames(const DrawnScenario& sample, const SensorConfig& sensor, const Clock& clock,
-               std::string digest)
+  using Taker = std::function<void(const LabelledFrame&, const LabelImage&)>;
+
+  SensorFrames(const DrawnScenario& sample, const Optics& grid, const Clock& clock,
+               std::string digest, Taker taker)
       : sample_(sample),
         clock_(clock),
         digest_(std::move(digest)),
-        plane_(sensor.camera.optics.columns, sensor.camera.optics.rows) {}
+        taker_(std::move(taker)),
+        plane_(grid.columns, grid.rows) {}
 
   void take(const Truth& truth, const ExpectedElectronImage& light, const ElectronImage& noise) {
     if (!objects_.empty() && objects_.front().truth.frame != truth.frame) clear();
@@ -39,24 +42,9 @@ class SensorFrames {
     const std::string key =
         formatted("%09llu-%s-%06u", static_cast<unsigned long long>(sample_.scenario.seed),
                   frame.report.sensor.c_str(), frame.report.frame);
-    const LabelledFrame labelled{frame, objects_, sample_, clock_, digest_, key};
-    SampleFrame made{.key = key};
-    const std::string image_name = made.key + ".image.npy";
-    made.members = tar_member(
-        image_name, npy_bytes(frame.counts.pixels, frame.counts.columns, frame.counts.rows));
-    made.members +=
-        tar_member(made.key + ".mask.npy",
-                   npy_bytes(plane_.image().pixels, frame.counts.columns, frame.counts.rows));
-    made.members += tar_member(made.key + ".labels.json", labels_json(labelled));
-    if (sample_.scenario.output.fits)
-      made.members += tar_member(made.key + ".fits", encode_frame(frame.counts, frame.header));
-    made.coco_image = coco_image(labelled, image_name);
-    made.coco_annotations = coco_annotations(labelled);
-    frames_.push_back(std::move(made));
+    taker_({frame, objects_, sample_, clock_, digest_, key}, plane_.image());
     clear();
   }
-
-  std::vector<SampleFrame>& frames() { return frames_; }
 
  private:
   void clear() {
@@ -67,10 +55,26 @@ class SensorFrames {
   const DrawnScenario& sample_;
   const Clock& clock_;
   std::string digest_;
+  Taker taker_;
   std::vector<ObjectLabel> objects_;  // of the frame at hand
   LabelPlane plane_;
-  std::vector<SampleFrame> frames_;
 };
+
+/// A frame as it goes into an archive.
+SampleFrame members_of(const LabelledFrame& labelled, const LabelImage& mask) {
+  const CountImage& counts = labelled.frame.counts;
+  SampleFrame made{.key = labelled.key};
+  const std::string image_name = made.key + ".image.npy";
+  made.members = tar_member(image_name, npy_bytes(counts.pixels, counts.columns, counts.rows));
+  made.members +=
+      tar_member(made.key + ".mask.npy", npy_bytes(mask.pixels, counts.columns, counts.rows));
+  made.members += tar_member(made.key + ".labels.json", labels_json(labelled));
+  if (labelled.sample.scenario.output.fits)
+    made.members += tar_member(made.key + ".fits", encode_frame(counts, labelled.frame.header));
+  made.coco_image = coco_image(labelled, image_name);
+  made.coco_annotations = coco_annotations(labelled);
+  return made;
+}
 
 /// Names of a scenario's objects, platforms and targets, and files that objects are loaded from.
 std::string names_in(const Scenario& scenario) {
@@ -116,15 +120,18 @@ void SampleMaker::prepare(const Scenario& scenario) {
   }
 }
 
-std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {
+void SampleMaker::make(const DrawnScenario& sample, const FrameTaker& take) {
   const Scenario& scenario = sample.scenario;
   prepare(scenario);
   const Clock clock = make_clock(scenario);
-  std::vector<std::unique_ptr<SensorFrames>> collected;
+  std::vector<std::unique_ptr<SensorFrames>> labelling;
   std::vector<FrameTap> taps;
-  for (const SensorConfig& sensor : scenario.sensors) {
-    collected.push_back(std::make_unique<SensorFrames>(sample, sensor, clock, digest_));
-    SensorFrames* frames = collected.back().get();
+  for (std::size_t k = 0; k < scenario.sensors.size(); ++k) {
+    const SensorConfig& sensor = scenario.sensors[k];
+    labelling.push_back(std::make_unique<SensorFrames>(
+        sample, sensor.camera.optics, clock, digest_,
+        [k, &take](const LabelledFrame& frame, const LabelImage& mask) { take(k, frame, mask); }));
+    SensorFrames* frames = labelling.back().get();
     const auto set_up = [frames](PipelineSettings& settings) {
       settings.output.noise = true;
       settings.object_light = [frames](const Truth& truth, const ExpectedElectronImage& light,
@@ -138,9 +145,16 @@ std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {
   Threads one(1);
   make_frames(scenario, {load_objects(scenario, clock), stars_.at(scenario.star_catalogue_path)},
               digest_, taps, one);
+}
+
+std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {
+  std::vector<std::vector<SampleFrame>> of_sensor(sample.scenario.sensors.size());
+  make(sample, [&](std::size_t sensor, const LabelledFrame& frame, const LabelImage& mask) {
+    of_sensor[sensor].push_back(members_of(frame, mask));
+  });
   std::vector<SampleFrame> frames;
-  for (const auto& sensor : collected)
-    for (SampleFrame& frame : sensor->frames()) frames.push_back(std::move(frame));
+  for (auto& made : of_sensor)
+    for (SampleFrame& frame : made) frames.push_back(std::move(frame));
   return frames;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/config/scenario_draws.h"
 #include "core/sky/star_map.h"
+#include "sensors/dataset/frame_labels.h"
 
 namespace dmise {
 
@@ -22,6 +23,10 @@ struct SampleFrame {
 /// Makes the frames of scenarios in this process and labels them. Keeps star catalogues.
 class SampleMaker {
  public:
+  /// Takes a frame when it is made; `sensor` is its number in the scenario.
+  using FrameTaker =
+      std::function<void(std::size_t sensor, const LabelledFrame&, const LabelImage& mask)>;
+
   /// `digest`: of the data set, written into labels and frames.
   explicit SampleMaker(std::string digest) : digest_(std::move(digest)) {}
 
@@ -29,7 +34,9 @@ class SampleMaker {
   /// that its sensors have the platforms and targets that they name, and that its trajectories and
   /// tables cover its times. Quick for what is like before.
   void prepare(const Scenario& scenario);
-  /// Returns the frames of all sensors, by sensor and frame. Throws what a run throws.
+  /// Hands over each frame when it is made. Throws what a run throws.
+  void make(const DrawnScenario& sample, const FrameTaker& take);
+  /// Returns the frames of all sensors, by sensor and frame.
   std::vector<SampleFrame> make(const DrawnScenario& sample);
 
  private:

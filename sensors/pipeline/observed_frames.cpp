@@ -60,7 +60,8 @@ std::optional<std::size_t> ObservedFrames::platform(const FrameTimes& exposure,
   for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
     if (!world.has_state(object, t))
       throw Error(sensor_.name + ": " + world.roster().objects[object].name +
-                  " has no state at frame " + std::to_string(exposure.frame));
+                  " has no state at frame " + std::to_string(exposure.frame) + ": " +
+                  world.why_no_state(object, t));
   return object;
 }
 
@@ -110,17 +111,21 @@ FrameProducts ObservedFrames::run(const FrameTimes& exposure, const World& world
 
 FrameProducts ObservedFrames::make(const FrameTimes& exposure, const World& world) const {
   if (!observer_) throw ConfigError(sensor_.observing->where + ": this command starts no programs");
-  FrameProducts frame;
   const ObserverExposure told = exposure_of(exposure, world);
-  auto observed = observer_(told);
-  if (!observed) {
-    frame.stopped = true;
-    return frame;
-  }
-  std::ranges::stable_sort(observed->sightings, std::ranges::greater(), &OwnSighting::snr);
-  frame.report = report_of(exposure, told, *observed);
+  auto got = observer_(told);
+  if (!got) return {.stopped = true};
+  if (auto* before = std::get_if<ObservedBefore>(&*got))
+    return {.report = std::move(before->report), .detections = std::move(before->detections)};
+  return products_of(exposure, world, told, std::get<Observed>(std::move(*got)));
+}
+
+FrameProducts ObservedFrames::products_of(const FrameTimes& exposure, const World& world,
+                                          const ObserverExposure& told, Observed observed) const {
+  FrameProducts frame;
+  std::ranges::stable_sort(observed.sightings, std::ranges::greater(), &OwnSighting::snr);
+  frame.report = report_of(exposure, told, observed);
   const auto object = platform(exposure, world);
-  for (const OwnSighting& sighting : observed->sightings) {
+  for (const OwnSighting& sighting : observed.sightings) {
     const ObserverState at =
         observer_at(sensor_, object, world, told.environment.earth, sighting.time);
     Detection& d = frame.detections.emplace_back(

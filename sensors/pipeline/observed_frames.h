@@ -16,6 +16,8 @@ class ObservedFrames : public FrameMaker {
 
  private:
   FrameProducts make(const FrameTimes& exposure, const World& world) const;
+  FrameProducts products_of(const FrameTimes& exposure, const World& world,
+                            const ObserverExposure& told, Observed observed) const;
   /// Index of the object that carries it, which has a state throughout the exposure.
   std::optional<std::size_t> platform(const FrameTimes& exposure, const World& world) const;
   ObserverExposure exposure_of(const FrameTimes& exposure, const World& world) const;

@@ -42,7 +42,8 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
          {commanded.start, commanded.end, times_.start, times_.end, times_of_all_rows().end})
       if (needed && !world.has_state(*needed, t))
         throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
-                    " has no state at frame " + std::to_string(commanded.frame));
+                    " has no state at frame " + std::to_string(commanded.frame) + ": " +
+                    world.why_no_state(*needed, t));
   if (target_ && norm(world.motion(*target_, commanded.middle).position_m -
                       observer(commanded.middle).position_m) < Sight::nearest_m)
     throw Error(sensor.name + ": pointing.target: " + world.roster().objects[*target_].name +

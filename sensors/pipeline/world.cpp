@@ -9,6 +9,8 @@
 #include "core/config/object_names.h"
 #include "core/frames/rotation_angle.h"
 #include "core/orbit/interpolation.h"
+#include "core/orbit/motion.h"
+#include "core/orbit/sgp4_batch.h"
 #include "core/propagation/run_on.h"
 
 namespace dmise {
@@ -80,6 +82,17 @@ bool World::has_state(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
   const auto k = place(i);
   return k && before->code[*k] == 0 && after->code[*k] == 0;
+}
+
+std::string World::why_no_state(std::size_t i, SimTime t) const {
+  const auto [before, after, index] = around(t);
+  const auto k = place(i);
+  if (!k) return "its states are not known";
+  const ObjectStates& without = before->code[*k] != 0 ? *before : *after;
+  const std::uint8_t code = without.code[*k];
+  const bool of_elements = code < std::uint8_t(MotionCode::outside_span);
+  const std::string_view why = of_elements ? describe(Sgp4Code(code)) : describe(MotionCode(code));
+  return std::string(why) + ", at tick " + std::to_string(without.tick);
 }
 
 const ObjectStates& World::at_tick(const Around& interval, Tick tick) const {

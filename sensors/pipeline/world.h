@@ -61,6 +61,8 @@ class World {
 
   /// Whether object `i` has a state at both ticks around `t`.
   bool has_state(std::size_t i, SimTime t) const;
+  /// Why it has none, for a message: "its path enters the Earth, at tick 3".
+  std::string why_no_state(std::size_t i, SimTime t) const;
   /// Hermite interpolation of the run's order on position and slope; cubic where the object has no
   /// state at one of the ticks beyond those around `t`. `t` must lie within the ticks held, with
   /// those of `knot_ticks`, and the object have a state there.

@@ -1,6 +1,6 @@
 """The engine in Python: the bytes of the command line, the facts of its arrays, and what bad input does.
 
-    engine.py DMISE
+    engine.py [DMISE [TEST..]]      TEST: as Frames.test_wcs_is_astropys
 """
 import ast
 import ctypes
@@ -14,10 +14,15 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
+import unittest.mock
+import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/system"), str(ROOT / "build/python")]
+SANITIZED = "DMISE_TEST_PACKAGE" in os.environ  # by tests/sanitizers/engine.sh, with a module of its own
+PACKAGE = os.environ.get("DMISE_TEST_PACKAGE", str(ROOT / "build/python"))
+sys.path[:0] = [str(ROOT / "tests/system"), PACKAGE]
 
 try:
     import astropy.io.fits
@@ -66,6 +71,13 @@ def resident_mb():
     for line in pathlib.Path("/proc/self/status").read_text().splitlines():
         if line.startswith("VmRSS"):
             return int(line.split()[1]) / 1024
+
+
+def header_of(frame):
+    """What a camera of another make says of a frame."""
+    return {"DATE-OBS": frame.header["DATE-OBS"], "EXPTIME": 8.0, "FOCALLEN": 200.0, "XPIXSZ": 9.0, "YPIXSZ": 9.0,
+            "RA": np.degrees(frame.report.boresight_ra_rad), "DEC": np.degrees(frame.report.boresight_dec_rad),
+            "SITELAT": 33.0, "SITELONG": -100.0, "GAIN": 1.0}
 
 
 class Frames(unittest.TestCase):
@@ -169,12 +181,95 @@ class Frames(unittest.TestCase):
                 found += 1
         self.assertGreater(found, 0)
 
+    def test_a_picture_is_that_of_a_run(self):
+        """One that writes pictures."""
+        frame = next(dmise.Simulation(self.path, seed=3).frames("west"))
+        with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+            pictured = pathlib.Path(directory) / "night.yaml"
+            pictured.write_text(SCENARIO.replace("png: off", "png: on"))
+            subprocess.run([DMISE, "run", pictured, "--out", f"{directory}/run", "--seed", "3"], check=True, capture_output=True)
+            self.assertEqual(frame.to_png(), (pathlib.Path(directory) / "run/west/frame-000001.png").read_bytes())
+        self.assertEqual(frame._repr_png_(), frame.to_png())
+
+    def test_notebooks_show_tables_and_runs(self):
+        frame = next(dmise.Simulation(self.path, seed=3).frames("west"))
+        shown = xml.etree.ElementTree.fromstring(f"<body>{frame.detections._repr_html_()}</body>")
+        head = [cell.text for cell in shown.iter("th")]
+        self.assertEqual(head, list(frame.detections.dtype.names))
+        row = [cell.text for cell in shown.find(".//tbody/tr")]
+        self.assertEqual(row[head.index("sensor")], "west")
+        self.assertAlmostEqual(float(row[head.index("x_px")]), frame.detections["x_px"][0], places=3)
+        self.assertIn(f"{len(frame.detections)} rows", shown.find("p").text)
+        self.assertIn("0 rows", frame.detections[:0]._repr_html_())
+        rows = [[cell.text for cell in line] for line in
+                xml.etree.ElementTree.fromstring(f"<body>{self.run_._repr_html_()}</body>").iter("tr")]
+        for sensor in ("west", "east"):
+            counts = [str(sum(record.sensor == sensor for record in records))
+                      for records in (self.run_.frames, self.run_.truth, self.run_.detections)]
+            self.assertIn([sensor, *counts], rows)
+
+    def test_texts_in_a_page_are_escaped(self):
+        link = self.run_directory.with_name("a<b>&c")
+        link.symlink_to(self.run_directory)
+        self.assertIn("a&lt;b&gt;&amp;c", dmise.open_run(link)._repr_html_())
+
+    def test_progress_counts_frames(self):
+        bars = []
+
+        class Bar:
+            def __init__(self, total, unit):
+                bars.append([total, 0, False])
+
+            def __enter__(self):
+                return self
+
+            def __exit__(self, *error):
+                bars[-1][2] = True
+
+            def update(self):
+                bars[-1][1] += 1
+
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": types.ModuleType("tqdm"), "tqdm.auto": types.SimpleNamespace(tqdm=Bar)}):
+            simulation = dmise.Simulation(SCENARIO)
+            self.assertEqual([f.number for f in simulation.frames("west", progress=True)], [1, 2, 3])
+            next(simulation.frames(progress=True))
+        self.assertEqual(bars, [[3, 3, True], [6, 1, True]])
+        with unittest.mock.patch.dict(sys.modules, {"tqdm": None, "tqdm.auto": None}), self.assertRaisesRegex(ImportError, "tqdm"):
+            dmise.Simulation(SCENARIO).frames(progress=True)
+
+    def test_a_scenario_as_yaml_is_the_same(self):
+        """Read by PyYAML, and by the engine."""
+        mapping = yaml.safe_load(SCENARIO)
+        mapping["sensors"][0] |= {"exposure_s": np.float64(8.0), "name": "on"}
+        text = dmise.to_yaml(mapping)
+        self.assertEqual(yaml.safe_load(text), json.loads(dmise.Simulation(mapping).yaml))
+        self.assertEqual(dmise.Simulation(text).digest, dmise.Simulation(mapping).digest)
+        self.assertEqual(dmise.Simulation(self.path).yaml, SCENARIO)
+        for value in (1e-7, 1.5e20, "", "a: b", "#", "- x", "ü", "no", "1", None, True, [], {}, [[1, {"a": []}], []], "a\nb", "'"):
+            self.assertEqual(yaml.safe_load(dmise.to_yaml({"k": value, "l": [{"m": value}]})), {"k": value, "l": [{"m": value}]})
+        for wrong, error in (("text\n", TypeError), ({"a": float("nan")}, dmise.ScenarioError), ({"a": {1}}, dmise.ScenarioError)):
+            with self.assertRaises(error):
+                dmise.to_yaml(wrong)
+
     def test_tables_of_pandas(self):
         truth = next(dmise.Simulation(SCENARIO).frames("west")).truth
         table = truth.to_pandas()
         self.assertIsInstance(table, pandas.DataFrame)
         self.assertEqual(len(table), len(truth))
         np.testing.assert_array_equal(table["true_range_m"], truth["true_range_m"])
+
+    def test_stars_trail_as_the_earth_turns(self):
+        """Of a camera at rest, against astropy's world coordinates: 0.03 px, for the pole precesses; of one that
+        follows the stars not at all."""
+        for sensor, turns in (("west", 1), ("east", 0)):
+            frame = next(iter(dmise.Simulation(SCENARIO).frames(sensor)))
+            middle = np.array([frame.header["NAXIS1"] - 1, frame.header["NAXIS2"] - 1]) / 2
+            ra_deg, dec_deg = frame.wcs.all_pix2world([middle], 0)[0]
+            turned_deg = turns * 15.0410687 / 3600 * frame.header["EXPTIME"]
+            moved = frame.wcs.all_world2pix([[ra_deg - turned_deg, dec_deg]], 0)[0] - middle
+            trail = dmise.SensorFrame(sensor, 1, 0, frame.counts, dict(frame.header)).star_trail_px
+            np.testing.assert_allclose(trail, moved, atol=0.03)
+            self.assertEqual(np.hypot(*trail) > 5, turns == 1)
 
     def test_an_empty_table_has_all_fields(self):
         alone = SCENARIO.replace("objects: [{catalogue: demo}]", "detection: off").replace(
@@ -197,9 +292,7 @@ class Frames(unittest.TestCase):
 
     def test_detect_and_solve_take_any_image(self):
         frame = next(dmise.Simulation(SCENARIO).frames("east"))
-        header = {"DATE-OBS": frame.header["DATE-OBS"], "EXPTIME": 8.0, "FOCALLEN": 200.0, "XPIXSZ": 9.0, "YPIXSZ": 9.0,
-                  "RA": np.degrees(frame.report.boresight_ra_rad), "DEC": np.degrees(frame.report.boresight_dec_rad),
-                  "SITELAT": 33.0, "SITELONG": -100.0, "GAIN": 1.0}
+        header = header_of(frame)
         wide = np.zeros((240, 320), np.float32)
         wide[::2, ::2] = frame.counts
         read_only = wide[::2, ::2]
@@ -211,16 +304,43 @@ class Frames(unittest.TestCase):
         with_nan[40:50, 40:50] = np.nan
         self.assertTrue(np.isfinite(dmise.detect(with_nan, header)["x_px"]).all())
 
+    def test_images_of_all_numbers(self):
+        frame = next(dmise.Simulation(SCENARIO).frames("east"))
+        header = header_of(frame)
+        usual = dmise.detect(frame.counts, header)
+        self.assertGreater(len(usual), 0)
+        for kind in (np.uint64, np.int64, np.float32, np.longdouble):
+            np.testing.assert_allclose(dmise.detect(frame.counts.astype(kind), header)["x_px"], usual["x_px"], atol=0.01)
+        self.assertEqual(len(dmise.detect(frame.counts[::-1, ::-1][::-1, ::-1], header)), len(usual))
+        hidden = np.zeros(frame.counts.shape, bool)
+        x, y = int(usual["x_px"][0]), int(usual["y_px"][0])
+        hidden[max(0, y - 20):y + 20, max(0, x - 20):x + 20] = True
+        masked, with_nan = np.ma.masked_array(frame.counts, hidden), np.where(hidden, np.nan, frame.counts)
+        np.testing.assert_array_equal(dmise.detect(masked, header)["x_px"], dmise.detect(with_nan, header)["x_px"])
+        infinite = frame.counts.astype(float)
+        infinite[3, 3:6] = np.inf, -np.inf, 1e308
+        self.assertTrue(np.isfinite(dmise.detect(infinite, header)["x_px"]).all())
+
+    def test_memory_that_is_not_theirs_cannot_be_written(self):
+        frame = next(dmise.Simulation(SCENARIO).frames("west", layers=True))
+        for array in (frame.counts, frame.mask):
+            with self.assertRaises(ValueError):
+                array[0, 0] = 1
+        with self.assertRaises(TypeError):
+            frame.header["EXPTIME"] = 1
+
     def test_images_that_are_none(self):
         for image in (np.zeros((0, 5)), np.zeros(5), np.zeros((2, 3, 4)), np.zeros((4, 4), complex), np.array([["a"]]),
+                      np.zeros((4, 4), bool), np.zeros((4, 4), object), np.zeros((4, 4), "M8[s]"), np.zeros((4, 4), "i4,i4"),
                       np.broadcast_to(np.uint8(0), (10**6, 10**6)), None, [[1, 2], [3]]):
             with self.assertRaises((dmise.InputError, ValueError)):
                 dmise.detect(image, {})
         for header in ({"EXPTIME": float("nan")}, {"TOO-LONG-A-KEY": 1}, 5, {"OBJECT": "é"}, {"EXPTIME": "x" * 100}):
             with self.assertRaises(dmise.InputError):
                 dmise.detect(np.zeros((64, 64), np.uint16), header)
-        with self.assertRaises((dmise.InputError, dmise.EngineError)):
-            dmise.solve(np.full((64, 64), np.nan), {})
+        for image in (np.full((64, 64), np.nan), np.full((64, 64), np.inf), np.zeros((1, 1)), np.zeros((1, 5000), np.uint8)):
+            with self.assertRaises((dmise.InputError, dmise.EngineError)):
+                dmise.solve(image, {})
 
     def test_errors_are_those_of_the_command_line(self):
         path = self.path.with_name("bad.yaml")
@@ -254,6 +374,8 @@ class Frames(unittest.TestCase):
         self.assertEqual(dmise.check(SCENARIO), {**json.loads(text), "scenario": "scenario"})
         with self.assertRaisesRegex(dmise.ScenarioError, "^scenario:2:16: simulation.start: is missing"):
             dmise.check({"simulation": {}})
+        with self.assertRaisesRegex(dmise.ScenarioError, "--help: No such file"):
+            dmise.check("--help")
 
     def test_survey_is_the_command(self):
         with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
@@ -273,7 +395,9 @@ class Frames(unittest.TestCase):
         self.assertTrue({("sky", "off"), ("budget", "draft")} <= {(row["effect"], row["level"]) for row in found["rows"]})
 
     def test_visible_and_score_are_the_commands(self):
+        before = sorted(os.listdir())
         passes = dmise.visible(self.path)
+        self.assertEqual(sorted(os.listdir()), before, "nothing is left in the directory that one is in")
         self.assertTrue(passes and all("sensor" in one for one in passes))
         self.assertIn("sensors", dmise.score(self.run_directory))
 
@@ -337,6 +461,22 @@ class Frames(unittest.TestCase):
         self.assertTrue(dmise.engine.core.wait_for_detached(20.0))
         self.assertEqual(next(dmise.Simulation(SCENARIO).frames("west")).number, 1)
 
+    def test_ctrl_c_ends_other_calls_within_a_second(self):
+        times = np.datetime64("2018-01-21") + np.arange(4000).astype("timedelta64[m]")
+        image = np.random.default_rng(1).normal(1000, 10, (5000, 5000)).astype(np.float32)
+        header = {"DATE-OBS": "2018-01-21T03:00:00", "EXPTIME": 8.0, "FOCALLEN": 200.0, "XPIXSZ": 3.0, "YPIXSZ": 3.0, "RA": 100.0,
+                  "DEC": 10.0, "SITELAT": 33.0, "SITELONG": -100.0}
+        for work in (lambda: dmise.propagate(ROOT / "launch/catalogues/demo.tle", times), lambda: dmise.detect(image, header)):
+            sent = []
+            timer = threading.Timer(0.5, lambda: (sent.append(time.monotonic()), os.kill(os.getpid(), signal.SIGINT)))
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                while not sent or time.monotonic() < sent[0] + 60:  # a quick machine needs several calls
+                    work()
+            self.assertLess(time.monotonic() - sent[0], 1.0)
+            self.assertTrue(dmise.engine.core.wait_for_detached(60.0))
+
+    @unittest.skipIf(SANITIZED, "what is freed is kept")
     def test_memory_is_flat_over_seeds(self):
         def make(seeds):
             for seed in seeds:
@@ -400,6 +540,17 @@ class Catalogues(unittest.TestCase):
             with self.assertRaisesRegex(dmise.InputError, reason):
                 dmise.propagate(what, times, axes=axes)
         self.assertEqual(dmise.propagate(self.TLE, []).positions_m.shape, (1, 0, 3))
+        for threads in (0, 10**6, 1.5):
+            with self.assertRaises((dmise.InputError, TypeError)):
+                dmise.propagate(self.TLE, "2001-01-01", threads=threads)
+
+    def test_times_in_any_memory(self):
+        times = np.datetime64("2000-06-28") + np.arange(12).astype("timedelta64[h]")
+        read_only = times[::-3]
+        read_only.flags.writeable = False
+        usual = dmise.propagate(self.TLE, times.tolist())
+        np.testing.assert_array_equal(dmise.propagate(self.TLE, read_only).positions_m, usual.positions_m[:, ::-3])
+        np.testing.assert_array_equal(dmise.propagate(self.TLE, times.reshape(3, 4)).positions_m, usual.positions_m)
 
 
 class Package(unittest.TestCase):
@@ -420,8 +571,9 @@ class Package(unittest.TestCase):
 
     def run_python(self, code):
         return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
-                              env={**os.environ, "PYTHONPATH": str(ROOT / "build/python")}).stdout.split()
+                              env={**os.environ, "PYTHONPATH": PACKAGE}).stdout.split()
 
+    @unittest.skipIf(SANITIZED, "the sanitizer itself is large")
     def test_importing_is_quick_and_small(self):
         """0.3 s and 60 MB, with the engine."""
         seconds, mb = map(float, self.run_python(
@@ -446,4 +598,4 @@ class Package(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)

@@ -12,6 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/system"), str(ROOT / "build/python")]
 os.environ["PYTHONPATH"] = str(ROOT / "build/python")
 from harness import PATIENCE_S, Run, check, check_same, main, wait_until  # noqa: E402
+import own_sensor  # noqa: E402
 import own_tracker  # noqa: E402
 from own_actor import dmise, program, write  # noqa: E402
 
@@ -129,6 +130,21 @@ def replays_detectors_and_trackers(binary, directory):
         check(re.search(words, said), said.strip().splitlines()[-1])
 
 
+def replays_sensors(binary, directory):
+    """Both of the scenario: frames, detections, and the tracks that are made of them."""
+    scenario = own_sensor.write(directory, "sensors.yaml", own_sensor.program("ranging", **own_sensor.RANGING), duration_s=40)
+    out, path = directory / "sensors", directory / "sensors.mcap"
+    recorded(binary, scenario, out, path)
+    made = [len((out / name).read_text().splitlines()) for name in ("ranger/detections.jsonl", "lidar/detections.jsonl", "tracks.jsonl")]
+    check(min(made) > 0, f"{made} detections of both, tracks")
+    dmise(binary, "run", scenario, *(word for node in ("laser", "blind") for word in ("--replay-node", f"{node}={path}")),
+          "--out", directory / "sensors-again")
+    check_same(directory / "sensors-again", out, "sensors replayed, without leave for programs")
+    gap = copy(path, directory / "gap.mcap", lambda name, sequence: name != "frame/ranger" or sequence < 3)
+    said = dmise(binary, "run", scenario, "--replay-node", f"laser={gap}", "--allow-programs", "--out", directory / "refused", code=2)
+    check(re.search("lacks frame [0-9]+ of sensor ranger", said), said.strip().splitlines()[-1])
+
+
 def code_of_damage(binary, directory, scenario, path):
     """A flipped byte is found by the checksums of chunks, or is of no account."""
     with Run(binary, "run", scenario, "--replay-node", f"gnc={path}", "--out", directory / "damaged", "--force") as run:
@@ -145,6 +161,7 @@ def test(binary, directory):
     replays(binary, directory, scenario, out, path)
     refuses(binary, directory, scenario, path)
     replays_detectors_and_trackers(binary, directory)
+    replays_sensors(binary, directory)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
 #include "launch/dataset_directory.h"
+#include "launch/dataset_growth.h"
 
 #include <gtest/gtest.h>
 
@@ -241,6 +242,100 @@ TEST_F(DatasetDirectories, RefusePartsOfAnotherDataSet) {
   std::ofstream(part) << "dataset two\nimage {}\n";
   EXPECT_THROW(dataset.finish(), Error);
   EXPECT_FALSE(fs::exists(directory + "/dataset.json"));
+}
+
+struct GrowingDataSets : DatasetDirectories {
+  static DatasetPlan seeds(std::uint64_t first, std::uint64_t last) {
+    DatasetPlan wanted = plan();
+    wanted.first_seed = first;
+    wanted.last_seed = last;
+    return wanted;
+  }
+  static std::vector<SampleFrame> frames_of(std::uint64_t seed) {
+    const std::string n = std::to_string(seed);
+    std::vector<SampleFrame> frames{
+        {.key = n, .members = "m" + n, .coco_image = "{\"width\":" + n + "}"}};
+    for (std::uint64_t k = 0; k < seed % 3; ++k)
+      frames.front().coco_annotations.push_back("{\"area\":" + n +
+                                                ",\"shard\":" + std::to_string(k) + "}");
+    return frames;
+  }
+  /// Makes what is missing; returns the seeds that were made.
+  static std::vector<std::uint64_t> make_missing(const std::string& path, const DatasetPlan& asked,
+                                                 std::uint64_t stop_at = 0) {
+    const DatasetPlan all = grown_plan(path, asked);
+    DatasetDirectory dataset(path, all);
+    std::vector<std::uint64_t> made;
+    if (!dataset.begin({}, false)) return made;
+    for (std::size_t shard = 0; shard < all.shards(); ++shard) {
+      if (dataset.has_shard(shard)) continue;
+      for (std::uint64_t seed = all.first_of(shard); seed <= all.last_of(shard); ++seed) {
+        if (seed == stop_at) return made;
+        if (dataset.has_sample(seed)) continue;
+        dataset.write_sample(seed, frames_of(seed));
+        made.push_back(seed);
+      }
+      dataset.assemble(shard);
+    }
+    EXPECT_EQ(dataset.finish(), 0u);
+    return made;
+  }
+  std::string refused(const DatasetPlan& asked) const {
+    try {
+      grown_plan(directory, asked);
+    } catch (const ConfigError& e) {
+      const std::string text = e.what();
+      const std::size_t at = text.find(directory);
+      return text.substr(0, at) + text.substr(at + directory.size());
+    }
+    return "";
+  }
+  using Seeds = std::vector<std::uint64_t>;
+};
+
+TEST_F(GrowingDataSets, HaveTheBytesOfOneThatIsMadeAtOnce) {
+  const std::string once = directory + "/once", twice = directory + "/twice";
+  make_missing(once, seeds(1, 9));
+  EXPECT_EQ(make_missing(twice, seeds(1, 4)), (Seeds{1, 2, 3, 4}));
+  EXPECT_EQ(make_missing(twice, seeds(5, 7)), (Seeds{5, 6, 7}));
+  EXPECT_EQ(make_missing(twice, seeds(8, 9)), (Seeds{7, 8, 9}));  // 7 was in an archive of one
+  EXPECT_EQ(make_missing(twice, seeds(1, 9)), Seeds{});
+  EXPECT_EQ(make_missing(twice, seeds(3, 6)), Seeds{});
+  for (const char* name : {"dataset.json", "coco.json", "dataset-000000.tar", "dataset-000001.tar",
+                           "dataset-000003.tar", "dataset-000004.tar"})
+    EXPECT_EQ(text_of(std::string("twice/") + name), text_of(std::string("once/") + name)) << name;
+}
+
+TEST_F(GrowingDataSets, GoOnAfterAnInterruption) {
+  make_missing(directory, seeds(1, 4));
+  EXPECT_EQ(make_missing(directory, seeds(5, 8), 7), (Seeds{5, 6}));
+  EXPECT_FALSE(fs::exists(directory + "/dataset.json"));
+  EXPECT_EQ(refused(seeds(1, 4)),
+            "--seeds:  has seeds 1..8, unfinished; the command that began them continues");
+  EXPECT_EQ(make_missing(directory, seeds(5, 8)), (Seeds{7, 8}));
+  EXPECT_TRUE(fs::exists(directory + "/dataset.json"));
+}
+
+TEST_F(GrowingDataSets, RefuseSeedsThatDoNotJoin) {
+  make_missing(directory, seeds(3, 6));
+  for (const auto& [first, last] : {std::pair(1, 4), std::pair(8, 9)})
+    EXPECT_EQ(refused(seeds(first, last)),
+              "--seeds:  has seeds 3..6; more must begin with one of these or the next, got " +
+                  std::to_string(first) + ".." + std::to_string(last));
+  DatasetPlan other = seeds(7, 8);
+  other.seeds_per_shard = 3;
+  EXPECT_EQ(refused(other), "--per-shard:  has 2 seeds in an archive, got 3");
+  other = seeds(7, 8);
+  other.digest = "two";
+  EXPECT_EQ(grown_plan(directory, other).first_seed, 7u);
+  EXPECT_THROW(DatasetDirectory(directory, other).begin({}, false), ConfigError);
+}
+
+TEST_F(GrowingDataSets, RefuseToGrowWithoutTheirFiles) {
+  make_missing(directory, seeds(1, 4));
+  fs::remove(directory + "/dataset-000001.tar");
+  EXPECT_THROW(make_missing(directory, seeds(5, 8)), ConfigError);
+  EXPECT_TRUE(fs::exists(directory + "/dataset.json"));
 }
 
 }  // namespace

@@ -111,6 +111,17 @@ def directories(binary, scenario, directory, reference):
     check(all((mine / name).read_text() == files[name] for name in ("dataset-backup.tar", "parts/my-file")), "and no others")
 
 
+def more_seeds(binary, scenario, directory):
+    once, grown = directory / "once", directory / "grown"
+    done(dataset(binary, scenario, once, "--seeds", "1..7", "--per-shard", 2), "seven seeds at once")
+    done(dataset(binary, scenario, grown, "--seeds", "1..4", "--per-shard", 2), "the first four")
+    kept = (grown / "dataset-000001.tar").stat().st_mtime_ns
+    done(dataset(binary, scenario, grown, "--seeds", "5..7", "--per-shard", 2), "three more")
+    same(grown, once, "four seeds and three more")
+    check((grown / "dataset-000001.tar").stat().st_mtime_ns == kept, "archives that are there are kept")
+    refused(dataset(binary, scenario, grown, "--seeds", "9..12", "--per-shard", 2), "has seeds 1..7; more must begin with one of these")
+
+
 def together(binary, scenario, directory):
     """Processes that would disturb each other are refused, and what is made is as if they had never begun."""
     other, out = directory / "other.yaml", directory / "together"
@@ -244,6 +255,7 @@ def test(binary, directory):
     reference = any_workers_and_tasks(binary, scenario, directory)
     kills(binary, scenario, directory, reference)
     directories(binary, scenario, directory, reference)
+    more_seeds(binary, scenario, directory)
     together(binary, scenario, directory)
     bad_input(binary, directory)
     failures(binary, scenario, directory)

@@ -19,7 +19,7 @@ from harness import Run, check, main
 
 FAULTS = (  # of an actor and of a detector, and what the run says of each
     ("SIGKILL", "SIGKILL", r"its program was killed \(Killed\)"),
-    ("SIGSTOP", "SIGSTOP", r"its program has not answered for (\d+\.\d) s"),
+    ("SIGSTOP", "SIGSTOP", r"its program has not answered for (?P<silent>\d+\.\d) s"),
     ("raises", "raises", r"ValueError: no (fuel|stars) \(wrong.py:\d+\)"),
     ("wrong_shape", "shape", r"ValueError: \w+: must have the shape \(3,\), got \(2,\)"),
     ("nan", "nan", r"(position_m|found\[0\].x_px): .*"),
@@ -69,7 +69,7 @@ def check_schedule(binary, directory, seed, number):
     detects, command = number // 8 % 2, ("run", "launch")[number // 16 % 2]
     fault, policy = (of_detector if detects else of_actor), rng.choice(("fail", "restart"))
     scenario, at = (write_detector if detects else write_actor)(directory, number, rng, fault, policy)
-    place = rf"peaks: frame {at} \(tick \d+\): " if detects else rf"gnc: tick {'[0-9]+' if fault.startswith('SIG') else at}: "
+    place = rf"peaks: frame {at} \(tick \d+\): " if detects else rf"gnc: tick {'[0-9]+( to [0-9]+)?' if fault.startswith('SIG') else at}: "
     told = f"{number}: {command}, {'detector' if detects else 'actor'}, {policy}, {fault} at {at}"
     out = directory / f"run-{number}"
     with Run(binary, command, scenario, "--allow-programs", "--out", out) as run:
@@ -80,7 +80,7 @@ def check_schedule(binary, directory, seed, number):
         check(code == 0, f"{told}: code {code} {last if code else ''}")
         return own_actor.check_like(out, undisturbed(binary, directory, detects), f"{told}: the bytes of an undisturbed run")
     found = re.search(place + words, last)
-    silent_s = float(found[1]) if found and fault == "SIGSTOP" else 0.0
+    silent_s = float(found["silent"]) if found and fault == "SIGSTOP" else 0.0
     limit_s = own_detector.SILENT_AFTER_S if detects else own_actor.SILENT_AFTER_S
     check(code == 1 and found and silent_s < limit_s + LATER_S, f"{told}: code {code}: {last}")
 

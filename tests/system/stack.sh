@@ -155,6 +155,55 @@ check_own_node() {
   compose down --volumes --timeout 1 >/dev/null 2>&1
 }
 
+# Programs in all four roles die, one is stopped, and the container of the one that moves the object is killed: another stands in.
+# In the reference all have had their deaths.
+check_own_deaths() {
+  local began=$SECONDS lived=$work/lived master
+  local -x DMISE_SCENARIO=roles.yaml DMISE_KEYS=$work/roles-keys DMISE_FLAGS=--allow-programs
+  mkdir "$lived"
+  printf x | tee "$lived"/{gnc,peaks-ground,laser,mine} >/dev/null
+  chmod -R a+rwX "$lived"
+  docker run --name roles --network none -v "$DMISE_SCENARIOS:/scenarios:ro" -v "$lived:/tmp" "$DMISE_IMAGE" run \
+    /scenarios/roles.yaml --allow-programs --out /products >"$work/roles.log" 2>&1 || die "dmise run: $(tail -n 5 "$work/roles.log")"
+  docker cp roles:/products "$work/roles-reference" >/dev/null
+  docker rm -fv roles >/dev/null
+  make_keys
+  compose up --no-color -d --scale sensor=2 --scale own-node=2 >"$work/up.log" 2>&1 || die "compose up: $(tail -n 30 "$work/up.log")"
+  master=$(container_of time-master)
+  wait_until 120 "the death of the program of gnc" mover
+  docker kill "$(mover)" >/dev/null
+  wait_until 300 "the end of the run" is_over "$master"
+  compose logs --no-color >"$work/up.log" 2>&1
+  [[ $(docker inspect -f '{{.State.ExitCode}}' "$master") == 0 ]] || die "roles: $(tail -n 30 "$work/up.log")"
+  (($(grep -c 'was restarted' "$work/up.log") >= 4)) || die "not every program was restarted: $(grep restarted "$work/up.log")"
+  docker cp "$master:/products" "$work/roles" >/dev/null
+  same_products "$work/roles-reference" "$work/roles" 10 "compose whose programs and container died ($((SECONDS - began)) s)"
+  compose down --volumes --timeout 1 >/dev/null 2>&1
+}
+
+# The container whose program has moved the object, and has been restarted.
+mover() {
+  local each
+  for each in $(container_of own-node); do
+    ! docker logs "$each" 2>&1 | grep -q 'was restarted' || { echo "$each"; return; }
+  done
+  return 1
+}
+is_over() { [[ $(docker inspect -f '{{.State.Status}}' "$1") == exited ]]; }
+
+# What a program says wrongly ends the run with node, tick and reason.
+check_own_fault() {
+  local code=0
+  local -x DMISE_SCENARIO=fault.yaml DMISE_KEYS=$work/fault-keys DMISE_FLAGS=--allow-programs
+  sed 's/run: .*/run: [python3, own_actor\/wrong.py], options: {fault: nan, at: 1}}]/' "$DMISE_SCENARIOS/own.yaml" >"$DMISE_SCENARIOS/fault.yaml"
+  make_keys
+  compose up --no-color --scale sensor=3 --exit-code-from time-master >"$work/fault.log" 2>&1 || code=$?
+  ((code == 1)) || die "exit code $code of a run whose program says NaN: $(tail -n 20 "$work/fault.log")"
+  grep -q 'gnc: tick 1: .*position_m' "$work/fault.log" || die "the reason is not told: $(tail -n 20 "$work/fault.log")"
+  compose down --volumes --timeout 1 >/dev/null 2>&1
+  say "ok: NaN of a program ends the run of containers with node, tick and reason"
+}
+
 # The head and the page that the gateway's container serves to who has this token.
 page_of_view() {
   compose_with_view exec -T gateway bash -c "exec 3<>/dev/tcp/127.0.0.1/7680
@@ -219,7 +268,9 @@ trap clean_up EXIT
 view_token=view-of-the-stack-test
 export DMISE_SCENARIOS=$work/scenarios DMISE_SCENARIO=scenario.yaml DMISE_KEYS=$work/keys
 mkdir "$work/tree" "$DMISE_SCENARIOS"
-cp "$tests"/stack/*.yaml "$tests"/own_actor/{walk,mortal}.py "$DMISE_SCENARIOS/"
+cp -r "$tests"/stack/*.yaml "$tests"/own_{actor,detector,sensor,tracker} "$tests"/own_actor/{walk,mortal}.py "$DMISE_SCENARIOS/"
+cp "$checkout/clients/python/examples/detector.py" "$DMISE_SCENARIOS/own_detector/"
+cp "$checkout/clients/python/examples/ranging.py" "$DMISE_SCENARIOS/own_sensor/"
 with_own_node python3 >"$DMISE_SCENARIOS/own.yaml"
 chmod -R a+rX "$DMISE_SCENARIOS"
 given=${DMISE_IMAGE-}
@@ -242,6 +293,8 @@ check_image
 make_keys
 check_compose
 check_own_node
+check_own_deaths
+check_own_fault
 check_view
 check_failure
 check_swarm

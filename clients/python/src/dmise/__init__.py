@@ -3,7 +3,8 @@
     for frame in dmise.Simulation("night.yaml").frames("west"):
         print(frame.counts.mean(), frame.detections["magnitude"])
 
-`Simulation` makes frames as arrays; `detect` and `solve` read frames of any camera, `propagate` moves a catalogue;
+`Simulation` makes frames as arrays; `detect` and `solve` read frames of any camera, `inject` draws objects into them,
+`propagate` moves a catalogue;
 `check`, `score`, `survey`, `tradeoff` and `visible` are commands. `subscribe` observes a run, `aio.subscribe` does so
 in asyncio, `Node` takes part in its clock, `actor` and `serve` move objects in it, `detector` finds sources in its
 frames, `sensor` observes, `tracker` makes the tracks, `open_run` reads the directory of a run that is over, `datasets`
@@ -23,6 +24,7 @@ _NAMES = {
     "dynamics": "apparent_direction pole_of",
     "errors": "EngineError InputError NoAnswer Refused RunFailed ScenarioError",
     "frame_images": "Frame Frames frames read_frame",
+    "injection": "Injected inject",
     "message": "Message",
     "node": "Node Tick",
     "orbit_fit": "Orbit Triangulated fit_orbit triangulate",
@@ -37,6 +39,7 @@ _NAMES = {
     "records": "ArrayLike Detection FrameReport Record Task Track Truth Wcs WcsRefraction",
     "replayer": "Replay",
     "runs": "Run open_run",
+    "scenario_text": "to_yaml",
     "sight": "LineOfSight line_of_sight",
     "simulation": "SimulatedFrame Simulation",
     "solution": "Solution detect solve",
@@ -45,7 +48,7 @@ _NAMES = {
     "world": "EarthOrientation EnvironmentState ObjectInfo ObjectRoster ObjectStates SiteState SunTrackingPanel",
 }
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names.split()}
-_MODULES = {"aio", "datasets"}
+_MODULES = {"aio", "datasets", "scenario"}
 __all__ = sorted({*_MODULE_OF, *_MODULES})
 
 

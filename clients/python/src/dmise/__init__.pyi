@@ -1,9 +1,10 @@
-from . import aio as aio, datasets as datasets
+from . import aio as aio, datasets as datasets, scenario as scenario
 from .commands import check as check, score as score, survey as survey, tradeoff as tradeoff, visible as visible
 from .dynamics import apparent_direction as apparent_direction, pole_of as pole_of
 from .errors import EngineError as EngineError, InputError as InputError, NoAnswer as NoAnswer, Refused as Refused
 from .errors import RunFailed as RunFailed, ScenarioError as ScenarioError
 from .frame_images import Frame as Frame, Frames as Frames, frames as frames, read_frame as read_frame
+from .injection import Injected as Injected, inject as inject
 from .message import Message as Message
 from .node import Node as Node, Tick as Tick
 from .orbit_fit import Orbit as Orbit, Triangulated as Triangulated, fit_orbit as fit_orbit, triangulate as triangulate
@@ -21,6 +22,7 @@ from .records import ArrayLike as ArrayLike, Detection as Detection, FrameReport
 from .records import Task as Task, Track as Track, Truth as Truth, Wcs as Wcs, WcsRefraction as WcsRefraction
 from .replayer import Replay as Replay
 from .runs import Run as Run, open_run as open_run
+from .scenario_text import to_yaml as to_yaml
 from .sight import LineOfSight as LineOfSight, line_of_sight as line_of_sight
 from .simulation import SimulatedFrame as SimulatedFrame, Simulation as Simulation
 from .solution import Solution as Solution, detect as detect, solve as solve

@@ -31,7 +31,9 @@ def check(scenario: Scenario, **options: Any) -> dict[str, Any]:
 
 def visible(scenario: Scenario, **options: Any) -> list[dict[str, Any]]:
     """Passes of objects through the sensors' fields."""
-    return [json.loads(line) for line in _printed("visible", scenario, jsonl=True, **options).splitlines()]
+    with tempfile.TemporaryDirectory() as directory:
+        lines = _printed("visible", scenario, jsonl=True, **{"out": directory, **options}).splitlines()
+        return [json.loads(line) for line in lines]
 
 
 def survey(scenario: Scenario, **options: Any) -> dict[str, Any]:
@@ -86,7 +88,8 @@ def _file_of(scenario: Scenario) -> Iterator[str]:
     """A file of the scenario, in memory if it is none."""
     text = text_of(scenario)
     if text is None:
-        yield os.fspath(scenario)  # type: ignore[arg-type]
+        path = os.fspath(scenario)  # type: ignore[arg-type]
+        yield f"./{path}" if path.startswith("-") else path  # which is no option
         return
     file = os.memfd_create("scenario", 0)  # which the program inherits
     try:

@@ -1,9 +1,11 @@
-"""Labelled frames that `dmise dataset` made, for training.
+"""Labelled frames for training: those that `dmise dataset` made, and the same ones made in memory.
 
     for sample in dmise.datasets.open_dataset("out/dataset"):
         print(sample.key, sample.image.shape, len(sample.objects))
+    for sample in dmise.datasets.stream("dataset.yaml", range(1, 501)):
+        ...
 
-`FrameDataset` is a map-style Dataset of PyTorch; torch is not needed to import it.
+`FrameDataset` is a map-style Dataset of PyTorch, `FrameStream` an IterableDataset; neither needs torch to be imported.
 """
 from __future__ import annotations
 
@@ -13,14 +15,20 @@ import hashlib
 import io
 import itertools
 import json
+import os
 import pathlib
 import tarfile
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from .records import ArrayLike
+
+if TYPE_CHECKING:
+    from .frame_stream import FrameStream as FrameStream
+
+Scenario = str | os.PathLike[str] | Mapping[str, Any]
 
 
 def mask_of(segmentation: dict[str, Any]) -> ArrayLike:
@@ -144,3 +152,31 @@ class FrameDataset:
 
     def __getitem__(self, index: int) -> Any:
         return self.transform(self.samples[index])
+
+
+def map_seed(scenario: Scenario, seed: int) -> list[Sample]:
+    """The samples that `dmise dataset` makes of a scenario for a seed: frames by sensor and number.
+
+    It depends on its arguments alone, so other processes and machines may each call it for seeds of their own, by name:
+    `pool.imap(functools.partial(map_seed, "dataset.yaml"), range(1, 501))`. What the scenario names is read once in a
+    process. Raises `ScenarioError` as `Simulation`.
+    """
+    from .sample_makers import samples_of
+
+    return [Sample(key, image, mask, json.loads(labels)) for key, image, mask, labels in samples_of(scenario, seed)]
+
+
+def stream(scenario: Scenario, seeds: Iterable[int]) -> Iterator[Sample]:
+    """The samples of seeds, one seed after the other, each made when it is asked for. No file is written."""
+    for seed in seeds:
+        yield from map_seed(scenario, seed)
+
+
+def __getattr__(name: str) -> Any:
+    """`FrameStream` looks for torch, which takes seconds to import, when it is used."""
+    if name != "FrameStream":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from .frame_stream import FrameStream
+
+    globals()[name] = FrameStream
+    return FrameStream

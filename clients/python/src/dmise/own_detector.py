@@ -63,6 +63,18 @@ class SensorFrame:
     def exposure_s(self) -> float:
         return float(self.header["EXPTIME"])
 
+    @property
+    def star_trail_px(self) -> npt.NDArray[np.float64]:
+        """x, y [px] by which the camera's turning moves a star in the middle of the frame, from start to end of the exposure."""
+        start, end = (np.array([float(self.header[f"Q{at}{k}"]) for k in range(4)]) for at in ("BEG", "END"))
+        star = _turned(end, _turned(start * (1, -1, -1, -1), np.array([0.0, 0.0, 1.0])))
+        return float(self.header["FOCALPX"]) * star[:2] / star[2]
+
+
+def _turned(q: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """q v q* of a unit quaternion w, x, y, z."""
+    return v + 2 * np.cross(q[1:], np.cross(q[1:], v) + q[0] * v)
+
 
 class Detector(Served):
     """A function `f(frame, options)` that returns what is in a frame, or a class whose instances are called so."""

@@ -14,20 +14,24 @@ MOST_PIXELS = 2**32 - 1
 # What the file says of its pixels, which is not the header's to say.
 _STRUCTURE = {"SIMPLE", "BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "NAXIS3", "BZERO", "BSCALE", "EXTEND", "XTENSION", "PCOUNT",
               "GCOUNT", "GROUPS", "END", "CHECKSUM", "DATASUM", "BLANK", "ZIMAGE", "EXTNAME"}
+# Numbers that FITS has not, as some that it has.
+_AS = {"i1": "i2", "u8": "f8", "f2": "f4", "f16": "f8"}
 _STORED = {"u1": (8, ">u1", 0), "i2": (16, ">i2", 0), "u2": (16, ">i2", 2**15), "i4": (32, ">i4", 0), "u4": (32, ">i4", 2**31),
            "i8": (64, ">i8", 0), "f4": (-32, ">f4", 0), "f8": (-64, ">f8", 0)}
 
 
 def fits_of(image: Any, header: Any) -> bytes:
-    """A FITS file of an image, rows x columns, and a header: a mapping of keywords, astropy's Header or cards."""
-    pixels = np.asarray(image)
+    """A FITS file of an image, rows x columns, and a header: a mapping of keywords, astropy's Header or cards.
+
+    A masked pixel has no value, as one that is NaN.
+    """
+    pixels = np.asarray(np.ma.filled(image.astype(np.float64), np.nan) if isinstance(image, np.ma.MaskedArray) else image)
     if pixels.ndim != 2 or pixels.size == 0 or pixels.size > MOST_PIXELS:
         raise InputError(f"image: must have rows and columns, and at most 2^32 pixels, got shape {pixels.shape}")
     kind = pixels.dtype.str[1:]
-    if kind == "f2":
-        kind = "f4"
+    kind = _AS.get(kind, kind)
     if kind not in _STORED:
-        raise InputError(f"image: must be of numbers of 8 to 64 bits, got {pixels.dtype}")
+        raise InputError(f"image: must be of real numbers, got {pixels.dtype}")
     bits, stored, zero = _STORED[kind]
     rows, columns = pixels.shape
     begin = [_card("SIMPLE", True), _card("BITPIX", bits), _card("NAXIS", 2), _card("NAXIS1", columns), _card("NAXIS2", rows)]

@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 import functools
+import html
 import json
 import pathlib
 from collections.abc import Iterator
 from typing import Any
 
 from .convert import start_of
+from .display import table_html
 from .json_lines import read_lines
 from .records import Detection, FrameReport, Task, Track, Truth
 from .tables import to_pandas
@@ -34,6 +36,19 @@ class Run:
             raise FileNotFoundError(f"{path}: {error.strerror}; is this the directory of a run that is over?") from None
         except (ValueError, TypeError, KeyError) as error:
             raise ValueError(f"{path}: not the record of a run: {error}") from None
+
+    def __repr__(self) -> str:
+        return f"<Run of {self.directory}, {self.status}, sensors {', '.join(self.sensors)}>"
+
+    def _repr_html_(self) -> str:
+        """What each sensor made, in notebooks."""
+        def rows() -> Iterator[tuple[Any, ...]]:
+            for sensor in self.sensors:
+                yield sensor, *(sum(record.sensor == sensor for record in records)
+                                for records in (self.frames, self.truth, self.detections))
+
+        return f"<p>Run of {html.escape(str(self.directory))}, {html.escape(self.status)}, begins {self.start_utc}</p>" + table_html(
+            ["sensor", "frames", "truth", "detections"], rows(), f"{len({track.id for track in self.tracks})} tracks")
 
     @property
     def status(self) -> str:

@@ -6,12 +6,15 @@ import json
 import math
 import operator
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from .errors import ScenarioError
 
 MOST_SEED = 2**63 - 1
+_PLAIN_KEY = re.compile("[A-Za-z][A-Za-z0-9_]*")  # a text that YAML takes without quotes
+_NO_TEXT = {"true", "false", "null", "on", "off", "yes", "no", "y", "n"}  # unless in quotes
 
 
 def text_of(scenario: str | os.PathLike[str] | Mapping[str, Any]) -> str | None:
@@ -23,6 +26,39 @@ def text_of(scenario: str | os.PathLike[str] | Mapping[str, Any]) -> str | None:
     if isinstance(scenario, str):
         return scenario if "\n" in scenario else None
     raise TypeError(f"scenario: must be a path, YAML text or a mapping, got {type(scenario).__name__}")
+
+
+def to_yaml(scenario: Mapping[str, Any]) -> str:
+    """A mapping with the keys of a scenario as YAML; numbers of numpy, paths and datetimes may stand in it."""
+    if not isinstance(scenario, Mapping):
+        raise TypeError(f"scenario: must be a mapping, got {type(scenario).__name__}")
+    return "".join(_block(_plain(scenario, ""), ""))
+
+
+def _block(value: Any, indent: str) -> Iterator[str]:
+    """Lines of a mapping or list that is no leaf, each leaf as JSON has it."""
+    pairs = [(f"{_leaf(key)}:", inner) for key, inner in value.items()] if isinstance(value, dict) else [("-", x) for x in value]
+    for head, inner in pairs:
+        if isinstance(inner, (dict, list)) and any(isinstance(x, (dict, list)) for x in _parts(inner)):
+            yield f"{indent}{head}\n"
+            yield from _block(inner, indent + "  ")
+        else:
+            yield f"{indent}{head} {_leaf(inner)}\n"
+
+
+def _parts(value: Any) -> Any:
+    return value.values() if isinstance(value, dict) else value
+
+
+def _leaf(value: Any) -> str:
+    """A number, text, or short list or mapping: JSON, which is YAML."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_leaf(key)}: {_leaf(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_leaf, value)) + "]"
+    if isinstance(value, float) and "e" in (text := repr(value)) and "." not in text:
+        return text.replace("e", ".0e")  # else a text in YAML 1.1
+    return value if isinstance(value, str) and _PLAIN_KEY.fullmatch(value) and value not in _NO_TEXT else json.dumps(value)
 
 
 def seed_of(seed: Any) -> int | None:

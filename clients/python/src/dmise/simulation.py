@@ -10,6 +10,7 @@ import functools
 import io
 import json
 import os
+import pathlib
 import types
 import warnings
 from collections.abc import Iterator, Mapping
@@ -20,6 +21,7 @@ import numpy.typing as npt
 
 from .cards import CardValue, values_of
 from .convert import start_of
+from .display import with_progress
 from .engine import core, streams
 from .errors import InputError
 from .json_lines import record_of_line
@@ -40,11 +42,12 @@ class Simulation:
     """
 
     def __init__(self, scenario: str | os.PathLike[str] | Mapping[str, Any], seed: int | None = None) -> None:
-        text = text_of(scenario)
-        if text is None:
-            self._core = core.Simulation.of_file(os.fspath(scenario), seed_of(seed))  # type: ignore[arg-type]
+        self._text = text_of(scenario)
+        if self._text is None:
+            self._path = os.fspath(scenario)  # type: ignore[arg-type]
+            self._core = core.Simulation.of_file(self._path, seed_of(seed))
         else:
-            self._core = core.Simulation.of_text(text, "scenario", seed_of(seed))
+            self._core = core.Simulation.of_text(self._text, "scenario", seed_of(seed))
 
     @property
     def sensors(self) -> list[str]:
@@ -77,15 +80,24 @@ class Simulation:
         """How many frames a sensor makes."""
         return int(self._core.count_of(sensor))
 
-    def frames(self, *sensors: str, threads: int = 1, layers: bool = False) -> Iterator[SimulatedFrame]:
+    @property
+    def yaml(self) -> str:
+        """The scenario as YAML, to keep it or to give it to the command line; relative paths in it are as given."""
+        return self._text if self._text is not None else pathlib.Path(self._path).read_text(encoding="utf-8")
+
+    def frames(self, *sensors: str, threads: int = 1, layers: bool = False,
+               progress: bool = False) -> Iterator[SimulatedFrame]:
         """Frames of sensors, of all if none is named, in the order of a run. One is made when it is asked for.
 
         threads   that compute; the frames do not depend on them
         layers    keeps the expected light of stars, objects and sky, and masks of objects, which takes longer
+        progress  shows a bar; needs tqdm
         """
-        stream = self._core.frames([*dict.fromkeys(sensors)], threads, layers)
+        chosen = [*dict.fromkeys(sensors)]
+        stream = self._core.frames(chosen, threads, layers)
         streams.add(stream)
-        return self._iterate(stream)
+        frames = self._iterate(stream)
+        return with_progress(frames, sum(map(self.frame_count, chosen or self.sensors))) if progress else frames
 
     def _iterate(self, stream: Any) -> Iterator[SimulatedFrame]:
         start = self.start_utc
@@ -178,6 +190,12 @@ class SimulatedFrame:
     def to_fits(self) -> bytes:
         """The frame as a FITS file, to the byte as `dmise run` writes it uncompressed."""
         return bytes(self._made.fits())
+
+    def to_png(self) -> bytes:
+        """A grey picture, for display only, as `dmise run` writes it: wide frames are averaged over squares of pixels."""
+        return bytes(self._made.png())
+
+    _repr_png_ = to_png  # of notebooks
 
     def _need_layers(self) -> None:
         if not self._made.has_layers:

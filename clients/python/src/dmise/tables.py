@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
+import html
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .display import MOST_ROWS, table_html
 from .records import Record
 
 if TYPE_CHECKING:
@@ -36,6 +38,14 @@ class Table(np.ndarray[Any, Any]):
     def __getitem__(self, key: Any) -> Any:
         found = super().__getitem__(key)
         return found.view(np.ndarray) if isinstance(found, Table) and found.dtype.names is None else found
+
+    def _repr_html_(self) -> str:
+        """The first rows, in notebooks."""
+        if self.dtype.names is None or self.ndim != 1:
+            return f"<pre>{html.escape(repr(self))}</pre>"
+        shown = np.asarray(self[:MOST_ROWS])
+        columns = [name for name in self.dtype.names if self.dtype[name].shape != (0,)]
+        return table_html(columns, ([row[name] for name in columns] for row in shown), f"{len(self)} rows")
 
     def to_pandas(self) -> "pandas.DataFrame":
         """A DataFrame with columns as those of `dmise.to_pandas`; needs pandas."""

@@ -1,0 +1,169 @@
+"""Samples in memory: those of `dmise dataset`, in any process, and each seed by one worker.
+
+    samples.py DMISE
+"""
+import functools
+import multiprocessing
+import pathlib
+import pickle
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "build/python"))
+
+try:
+    import numpy as np
+except ImportError as missing:
+    print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
+    sys.exit(77)
+import dmise  # noqa: E402
+
+try:
+    import dmise.engine
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+from dmise.datasets import FrameStream, map_seed, open_dataset, stream  # noqa: E402
+
+DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
+SENSOR = """\
+  - name: {name}
+    site: {{latitude_deg: {{uniform: [25, 40]}}, longitude_deg: -100, height_m: 300}}
+    camera:
+      optics: {{columns: 96, rows: 64, pixel_pitch_m: 9e-6, focal_length_m: 0.2, aperture_m: 0.1, psf_fwhm_px: 2}}
+      detector: {{read_noise_e: {{normal: {{mean: 6, sigma: 1, min: 3}}}}, full_well_e: 60000, gain_e_per_dn: 1, bias_dn: {{integers: [90, 110]}}}}
+      band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
+    pointing: {{target: {{one_of: [GOES 13, GOES 14]}}, tracking: fixed}}
+    exposure_s: {{log_uniform: [1, 8]}}
+    cadence_s: 10
+"""
+SCENARIO = """\
+simulation: {start: {uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}, duration_s: 20, tick_s: 10}
+objects: [{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]
+stars: {catalogue: kstars}
+output: {fits: off}
+sensors:
+""" + SENSOR.format(name="west") + SENSOR.format(name="east")
+SEEDS = range(5, 11)
+
+
+def as_bytes(sample):
+    return sample.key, sample.image.tobytes(), sample.image.dtype, sample.mask.tobytes(), sample.labels
+
+
+class Samples(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = tempfile.TemporaryDirectory(prefix="dmise-test-")
+        base = pathlib.Path(cls.directory.name)
+        cls.path = base / "dataset.yaml"
+        cls.path.write_text(SCENARIO)
+        subprocess.run([DMISE, "dataset", cls.path, "--seeds", "5..10", "--out", base / "out"], check=True, capture_output=True)
+        cls.written = list(open_dataset(base / "out"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.directory.cleanup()
+
+    def test_they_are_those_of_the_command(self):
+        """Images, masks and labels with the digest of the data set, of four frames of two sensors for each seed."""
+        made = list(stream(self.path, SEEDS))
+        self.assertEqual(len(made), 24)
+        for ours, theirs in zip(made, self.written, strict=True):
+            self.assertEqual(as_bytes(ours), as_bytes(theirs))
+            for mine, other in zip(ours.masks(), theirs.masks(), strict=True):
+                np.testing.assert_array_equal(mine, other)
+        self.assertGreater(sum(len(sample.objects) for sample in made), 0)
+
+    def test_other_processes_map_over_seeds(self):
+        for method in ("spawn", "fork"):
+            with multiprocessing.get_context(method).Pool(2) as pool:
+                made = [sample for each in pool.imap(functools.partial(map_seed, self.path), SEEDS) for sample in each]
+            self.assertEqual(list(map(as_bytes, made)), list(map(as_bytes, self.written)), method)
+
+    def test_scenarios_may_be_text(self):
+        """The digest is of the text; images are the same."""
+        ours, theirs = map_seed(SCENARIO, 7), map_seed(self.path, 7)
+        self.assertEqual([as_bytes(sample) for sample in ours], [as_bytes(sample) for sample in theirs])
+        mapping = {"simulation": {"start": {"one_of": ["2018-01-21T03:00:00Z"]}, "duration_s": 1, "tick_s": 1}}
+        with self.assertRaisesRegex(dmise.ScenarioError, "sensors"):
+            map_seed(mapping, 1)
+
+    def test_the_number_of_objects_is_drawn(self):
+        """A choice among lists, one of which is empty: images with none, one and two."""
+        fixed = SCENARIO[:SCENARIO.index("  - name: east")].replace("{uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}",
+                                                                    "2018-01-21T03:00:00Z").replace("{uniform: [25, 40]}", "33")
+        alone = "{catalogue: demo, only: [GOES 13], radius_m: 3}"
+        simulated = fixed.replace("{log_uniform: [1, 8]}\n", "4\n").replace("{one_of: [GOES 13, GOES 14]}", "GOES 13")
+        simulated = simulated.replace("{normal: {mean: 6, sigma: 1, min: 3}}", "6").replace("{integers: [90, 110]}", "100")
+        report = next(dmise.Simulation(simulated.replace("{log_uniform: [1, 8]}", "3")).frames()).report
+        there = f"{{ra_deg: {np.degrees(report.boresight_ra_rad)}, dec_deg: {np.degrees(report.boresight_dec_rad)}, tracking: fixed}}"
+        lists = f"{{one_of: [[], [{alone}], [{alone}, {{name: twin, radius_m: 3, motion: {{fixed: {{gcrs_m: [-4e7, 1e7, 0]}}}}}}]]}}"
+        drawn = fixed.replace("[{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]", lists)
+        drawn = drawn.replace("{target: {one_of: [GOES 13, GOES 14]}, tracking: fixed}", there)
+        made = [sample for sample in stream(drawn, range(1, 13)) if sample.labels["frame"] == 1]
+        self.assertEqual({int(sample.labels["drawn"]["objects.one_of"]) for sample in made}, {0, 1, 2})
+        for sample in made:
+            names = [found["name"] for found in sample.objects]
+            self.assertEqual(names, [] if sample.labels["drawn"]["objects.one_of"] == 0 else ["GOES 13"])
+            self.assertEqual(bool(sample.mask.any()), bool(names))
+
+    def test_a_scenario_that_changes_is_read_again(self):
+        path = self.path.with_name("changing.yaml")
+        path.write_text(SCENARIO)
+        before = map_seed(path, 5)[0]
+        path.write_text(SCENARIO.replace("full_well_e: 60000", "full_well_e: 61000.0"))
+        self.assertNotEqual(map_seed(path, 5)[0].labels["digest"], before.labels["digest"])
+
+    def test_workers_share_the_seeds(self):
+        """PyTorch tells a worker its number and how many there are; a stub does in its place."""
+        module = sys.modules[FrameStream.__module__]
+        usual = module.get_worker_info
+        streams = [pickle.loads(pickle.dumps(FrameStream(self.path, range(1, 12), worker=rank, workers=2))) for rank in range(2)]
+        self.assertEqual([list(each.own_seeds()) for each in streams], [[1, 3, 5, 7, 9, 11], [2, 4, 6, 8, 10]])
+        try:
+            found = []
+            for rank in range(2):
+                for k in range(3):
+                    module.get_worker_info = lambda k=k: types.SimpleNamespace(id=k, num_workers=3)
+                    found.append(list(streams[rank].own_seeds()))
+        finally:
+            module.get_worker_info = usual
+        self.assertEqual(sorted(seed for seeds in found for seed in seeds), list(range(1, 12)))
+        self.assertLessEqual(max(map(len, found)) - min(map(len, found)), 1)
+
+    def test_streams_give_what_a_model_takes(self):
+        image, mask = next(iter(FrameStream(self.path, [6])))
+        self.assertEqual((image.dtype, image.shape, mask.dtype, mask.shape), (np.float32, (1, 64, 96), np.int64, (64, 96)))
+        keys = list(FrameStream(self.path, SEEDS, transform=lambda sample: sample.key, worker=1, workers=3))
+        self.assertEqual(keys, [sample.key for sample in self.written if sample.labels["seed"] in (6, 9)])
+
+    def test_bad_input_is_one_line(self):
+        for scenario, seed, reason in (
+                (SCENARIO.replace("uniform: [25, 40]", "uniform: [25, 100]"), 1, r"^scenario:.*latitude_deg.*the most of its uniform"),
+                (SCENARIO.replace("uniform: [25, 40]", "unifrm: [25, 40]"), 1, "did you mean uniform"),
+                (SCENARIO.replace("fits: off", "planes: [noise]"), 1, "output.planes"), ("/nonexistent.yaml", 1, "nonexistent"),
+                (self.path, -1, "seed: must be in 0..999999999, got -1"), (self.path, 10**9, "seed: must be in")):
+            with self.assertRaisesRegex(dmise.ScenarioError, reason):
+                map_seed(scenario, seed)
+        with self.assertRaises(TypeError):
+            map_seed(self.path, 1.5)
+        for worker, workers in ((2, 2), (-1, 2), (0, 0)):
+            with self.assertRaisesRegex(ValueError, "worker"):
+                FrameStream(self.path, SEEDS, worker=worker, workers=workers)
+
+    def test_pytorch_reads_a_stream(self):
+        try:
+            from torch.utils.data import DataLoader
+        except ImportError:
+            self.skipTest("torch is not installed")
+        loader = DataLoader(FrameStream(self.path, SEEDS), batch_size=None, num_workers=2)
+        self.assertEqual(len(list(loader)), len(self.written))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
