@@ -13,11 +13,11 @@ namespace {
 // Of slopes [SNR/px times the filter's width], so that no star counts for more. Neither brightness
 // nor the whole slope is limited: a limit is reached beyond the end of a bright star.
 constexpr float steepest = 6.0F;
-constexpr double least_coherence = 0.25;      // of edges; 0: all directions are equally frequent
-constexpr double least_share_of_ends = 0.06;  // of the ends of light that have another one
+constexpr double least_coherence = 0.25;  // of edges; 0: all directions are equally frequent
+constexpr double least_share = 0.12;      // of the beginnings of light that have an end
 constexpr double least_scatters = 8.0;
 constexpr double shortest_common_sigmas = 5.0, longest_common_px = 400.0;
-constexpr std::size_t most_ends = 8000;
+constexpr std::size_t most_beginnings = 4000;
 
 struct Slope {
   float x = 0.0F, y = 0.0F;
@@ -38,7 +38,7 @@ class Slopes {
     for (int y = 1; y + 1 < rows_; ++y)
       for (int x = 1; x + 1 < columns_; ++x) {
         const Slope s{0.5F * (at(x + 1, y) - at(x - 1, y)), 0.5F * (at(x, y + 1) - at(x, y - 1))};
-        if (std::hypot(s.x, s.y) > least) slopes_[index(x, y)] = s;
+        if (s.x * s.x + s.y * s.y > least * least) slopes_[index(x, y)] = s;
       }
   }
 
@@ -77,28 +77,32 @@ class Slopes {
   std::vector<Slope> slopes_;
 };
 
-/// Beginnings and ends of light along a direction.
-class Ends {
+struct PixelStep {
+  int x = 0, y = 0;
+};
+
+/// Beginnings of light along a direction, of which the ends are searched.
+class Beginnings {
  public:
-  Ends(const Scene& scene, std::vector<float> slopes)
+  Beginnings(const Scene& scene, std::vector<float> slopes)
       : columns_(scene.counts.columns), rows_(scene.counts.rows), slopes_(std::move(slopes)) {
     const auto least = float(3.0 / (std::sqrt(2.0) * scene.sigma_px));
-    std::vector<End> all;
+    std::vector<Beginning> all;
     for (int y = 0; y < rows_; ++y)
       for (int x = 0; x < columns_; ++x)
-        if (std::abs(at(x, y)) > least) all.push_back({x, y, at(x, y)});
-    const std::size_t every = all.size() / most_ends + 1;
-    for (std::size_t i = 0; i < all.size(); i += every) ends_.push_back(all[i]);
-    for (const End& e : ends_) square_ += double(e.slope * e.slope);
+        if (at(x, y) > least) all.push_back({x, y, at(x, y)});
+    const std::size_t every = all.size() / most_beginnings + 1;
+    for (std::size_t i = 0; i < all.size(); i += every) beginnings_.push_back(all[i]);
+    for (const Beginning& e : beginnings_) square_ += double(e.slope * e.slope);
   }
 
-  /// Share of the ends, by their slopes, of which the opposite is at a distance.
+  /// Share of the beginnings, by their slopes, of which the end is at a distance.
   double share_at(double dx, double dy) const {
     if (!(square_ > 0)) return 0.0;
     const int ix = int(std::floor(dx)), iy = int(std::floor(dy));
     const auto fx = float(dx - ix), fy = float(dy - iy);
     double sum = 0.0;
-    for (const End& e : ends_) {
+    for (const Beginning& e : beginnings_) {
       const int x = e.x + ix, y = e.y + iy;
       if (x < 0 || y < 0 || x + 1 >= columns_ || y + 1 >= rows_) continue;
       const float there = (1 - fy) * ((1 - fx) * at(x, y) + fx * at(x + 1, y)) +
@@ -108,30 +112,52 @@ class Ends {
     return sum / square_;
   }
 
+  /// The same at many distances of whole pixels, none of which is longer than `reach_px`.
+  std::vector<double> shares_at(const std::vector<PixelStep>& distances, int reach_px) const {
+    std::vector<float> sums(distances.size(), 0.0F);
+    std::vector<std::ptrdiff_t> steps;
+    for (const PixelStep& d : distances) steps.push_back(std::ptrdiff_t(d.y) * columns_ + d.x);
+    for (const Beginning& e : beginnings_) {
+      const float* here = &slopes_[index(e.x, e.y)];
+      if (std::min({e.x, e.y, columns_ - 1 - e.x, rows_ - 1 - e.y}) >= reach_px) {
+        for (std::size_t k = 0; k < steps.size(); ++k) sums[k] -= e.slope * here[steps[k]];
+        continue;
+      }
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        const int x = e.x + distances[k].x, y = e.y + distances[k].y;
+        if (x >= 0 && y >= 0 && x < columns_ && y < rows_) sums[k] -= e.slope * here[steps[k]];
+      }
+    }
+    std::vector<double> shares;
+    for (const float sum : sums) shares.push_back(square_ > 0 ? double(sum) / square_ : 0.0);
+    return shares;
+  }
+
  private:
-  struct End {
+  struct Beginning {
     int x, y;
     float slope;
   };
-  float at(int x, int y) const {
-    return slopes_[std::size_t(y) * std::size_t(columns_) + std::size_t(x)];
+  std::size_t index(int x, int y) const {
+    return std::size_t(y) * std::size_t(columns_) + std::size_t(x);
   }
+  float at(int x, int y) const { return slopes_[index(x, y)]; }
 
   int columns_, rows_;
   std::vector<float> slopes_;
-  std::vector<End> ends_;
+  std::vector<Beginning> beginnings_;
   double square_ = 0.0;
 };
 
 /// The middle of the peak of shares around a distance.
-PixelPosition middle_of_peak(const Ends& ends, PixelPosition peak) {
+PixelPosition middle_of_peak(const Beginnings& beginnings, PixelPosition peak) {
   constexpr int reach = 6;
   constexpr double step_px = 0.5;
   for (int round = 0; round < 2; ++round) {
     std::vector<double> shares;
     for (int j = -reach; j <= reach; ++j)
       for (int i = -reach; i <= reach; ++i)
-        shares.push_back(ends.share_at(peak.x_px + i * step_px, peak.y_px + j * step_px));
+        shares.push_back(beginnings.share_at(peak.x_px + i * step_px, peak.y_px + j * step_px));
     const double floor = 0.5 * *std::ranges::max_element(shares);
     double sum = 0.0, x = 0.0, y = 0.0;
     std::size_t k = 0;
@@ -146,32 +172,39 @@ PixelPosition middle_of_peak(const Ends& ends, PixelPosition peak) {
   return peak;
 }
 
+/// Distances around a direction, of trails up to a length.
+std::vector<PixelStep> distances_along(double direction_rad, double from_px, double to_px) {
+  const double c = std::cos(direction_rad), s = std::sin(direction_rad);
+  std::vector<PixelStep> out;
+  for (double along = from_px; along < to_px; along += 1.0) {
+    const double beside = std::ceil(2 + 0.04 * along);
+    for (double across = -beside; across <= beside; across += 1.0)
+      out.push_back(
+          {int(std::lround(along * c - across * s)), int(std::lround(along * s + across * c))});
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<PixelPosition> common_trail(const Scene& scene) {
   const Slopes slopes(scene);
   const auto direction = slopes.direction_rad();
   if (!direction) return std::nullopt;
-  const Ends ends(scene, slopes.along(*direction));
-  const double c = std::cos(*direction), s = std::sin(*direction);
+  const Beginnings beginnings(scene, slopes.along(*direction));
   const double most_px =
       std::min(longest_common_px, 0.6 * std::min(scene.counts.columns, scene.counts.rows));
-  std::vector<double> shares;
-  double most = 0.0;
-  PixelPosition peak;
-  for (double along = shortest_common_sigmas * std::sqrt(2.0) * scene.sigma_px; along < most_px;
-       along += 1.0) {
-    const double beside = std::ceil(2 + 0.04 * along);
-    for (double across = -beside; across <= beside; across += 1.0) {
-      const PixelPosition at{along * c - across * s, along * s + across * c};
-      const double share = ends.share_at(at.x_px, at.y_px);
-      shares.push_back(std::abs(share));
-      if (share > most) most = share, peak = at;
-    }
-  }
-  if (most < least_share_of_ends || most < least_scatters * 1.48 * median_of(shares))
-    return std::nullopt;
-  return middle_of_peak(ends, peak);
+  const auto distances = distances_along(
+      *direction, shortest_common_sigmas * std::sqrt(2.0) * scene.sigma_px, most_px);
+  if (distances.empty()) return std::nullopt;
+  std::vector<double> shares = beginnings.shares_at(distances, int(1.1 * most_px) + 4);
+  const auto best = std::ranges::max_element(shares);
+  const double most = *best;
+  const PixelStep& at = distances[std::size_t(best - shares.begin())];
+  const PixelPosition peak{double(at.x), double(at.y)};
+  for (double& share : shares) share = std::abs(share);
+  if (most < least_share || most < least_scatters * 1.48 * median_of(shares)) return std::nullopt;
+  return middle_of_peak(beginnings, peak);
 }
 
 }  // namespace dmise

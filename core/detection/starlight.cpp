@@ -23,18 +23,28 @@ std::vector<float> half_of_gaussian(double sigma_px) {
   return half;
 }
 
-/// Convolves values that follow each other by `stride` with half a kernel; there is no light
-/// beyond.
-void convolve(const float* from, float* to, std::size_t count, std::size_t stride,
-              const std::vector<float>& half) {
-  const auto n = std::ptrdiff_t(count);
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    float sum = half[0] * from[std::size_t(i) * stride];
-    for (std::ptrdiff_t k = 1; k < std::ptrdiff_t(half.size()); ++k) {
-      if (i >= k) sum += half[std::size_t(k)] * from[std::size_t(i - k) * stride];
-      if (i + k < n) sum += half[std::size_t(k)] * from[std::size_t(i + k) * stride];
-    }
-    to[std::size_t(i) * stride] = sum;
+/// Convolves a row with half a kernel; there is no light beyond.
+void convolve_row(const float* from, float* to, int count, const std::vector<float>& half) {
+  for (int i = 0; i < count; ++i) to[i] = half[0] * from[i];
+  for (int k = 1; k < std::min(count, int(half.size())); ++k) {
+    const float weight = half[std::size_t(k)];
+    for (int i = k; i < count; ++i) to[i] += weight * from[i - k];
+    for (int i = 0; i + k < count; ++i) to[i] += weight * from[i + k];
+  }
+}
+
+/// One row of the convolution of columns, in whole rows, as they lie in memory.
+void convolve_columns(const std::vector<float>& from, float* to, int columns, int rows, int y,
+                      const std::vector<float>& half) {
+  const auto row = [&](int j) { return &from[std::size_t(j) * std::size_t(columns)]; };
+  const auto add = [&](const float* values, float weight) {
+    for (int x = 0; x < columns; ++x) to[x] += weight * values[x];
+  };
+  std::fill_n(to, columns, 0.0F);
+  add(row(y), half[0]);
+  for (int k = 1; k < int(half.size()); ++k) {
+    if (y >= k) add(row(y - k), half[std::size_t(k)]);
+    if (y + k < rows) add(row(y + k), half[std::size_t(k)]);
   }
 }
 
@@ -51,26 +61,23 @@ Starlight::Starlight(const Scene& scene)
 
 void Starlight::filter() {
   const int columns = scene_.counts.columns, rows = scene_.counts.rows;
-  std::vector<float> level(std::size_t(columns), 0.0F), rows_smoothed(snr_.size());
+  std::vector<float> level(std::size_t(columns), 0.0F), excess = level, smoothed(snr_.size());
   const auto half = half_of_gaussian(filter_px_);
   for (int y = 0; y < rows; ++y) {
     scene_.background.level_row(y, 0, columns, level.data());
     for (int x = 0; x < columns; ++x)
-      snr_[index(x, y)] =
+      excess[std::size_t(x)] =
           scene_.has_value(x, y) ? float(scene_.counts.at(x, y)) - level[std::size_t(x)] : 0.0F;
-    convolve(&snr_[index(0, y)], &rows_smoothed[index(0, y)], std::size_t(columns), 1, half);
+    convolve_row(excess.data(), &smoothed[index(0, y)], columns, half);
   }
-  for (int x = 0; x < columns; ++x)
-    convolve(&rows_smoothed[index(x, 0)], &snr_[index(x, 0)], std::size_t(rows),
-             std::size_t(columns), half);
   for (int y = 0; y < rows; ++y) {
+    convolve_columns(smoothed, &snr_[index(0, y)], columns, rows, y, half);
     scene_.background.sigma_row(y, 0, columns, level.data());
     for (int x = 0; x < columns; ++x) snr_[index(x, y)] /= float(unit_) * level[std::size_t(x)];
   }
 }
 
-void Starlight::add(const Trail& star, double times) {
-  const Psf psf = scene_.psf.at({star.x_px, star.y_px});
+std::vector<FitPixel> Starlight::reached_by(const Trail& star) const {
   const double noise_e = scene_.noise_e_at(star.x_px, star.y_px);
   const double sigma_px = scene_.psf.sigma_at({star.x_px, star.y_px});
   const double peak = trail_value(star, sigma_px, star.x_px, star.y_px) / noise_e;
@@ -88,13 +95,25 @@ void Starlight::add(const Trail& star, double times) {
     for (int x = std::max(x0, first); x <= std::min(x1, last); ++x)
       if (around.has(x, y)) pixels.push_back({x, y});
   }
-  if (pixels.empty()) return;
+  return pixels;
+}
+
+void Starlight::add_electrons(const Trail& star, double times) {
+  const auto pixels = reached_by(star);
+  const auto light = light_in(pixels, {&star, 1}, scene_.psf.at({star.x_px, star.y_px}));
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    electrons_[index(pixels[i].x, pixels[i].y)] += float(times * light[i]);
+}
+
+void Starlight::add(const Trail& star, double times) {
+  const auto pixels = reached_by(star);
+  const Psf psf = scene_.psf.at({star.x_px, star.y_px});
   Psf filtered = psf;
   for (std::size_t i = 0; i < filtered.count; ++i)
     filtered.parts[i].sigma_px = std::hypot(filtered.parts[i].sigma_px, filter_px_);
   const std::vector<double> light = light_in(pixels, {&star, 1}, psf);
   const std::vector<double> through = light_in(pixels, {&star, 1}, filtered);
-  const double in_noise = times / (noise_e * unit_);
+  const double in_noise = times / (scene_.noise_e_at(star.x_px, star.y_px) * unit_);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const std::size_t at = index(pixels[i].x, pixels[i].y);
     electrons_[at] += float(times * light[i]);

@@ -12,10 +12,13 @@ class Starlight {
 
   /// Adds `times` the light of a star: -1 takes it back.
   void add(const Trail& star, double times);
+  /// The same without the filtered frame, which is not right afterwards.
+  void add_electrons(const Trail& star, double times);
 
   double electrons(int x, int y) const { return double(electrons_[index(x, y)]); }
   /// SNR of a point at a pixel, in the frame through the matched filter of points less the stars.
   float snr(int x, int y) const { return snr_[index(x, y)]; }
+  const float* snr_from(int x, int y) const { return &snr_[index(x, y)]; }  // on along its row
 
   /// Usable pixels on a trail less the stars, with their photons' noise and the error of their
   /// light.
@@ -31,6 +34,7 @@ class Starlight {
     return std::size_t(y) * std::size_t(scene_.counts.columns) + std::size_t(x);
   }
   void filter();
+  std::vector<FitPixel> reached_by(const Trail& star) const;
 
   const Scene& scene_;
   double filter_px_, unit_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <queue>
+#include <span>
 
 #include "core/base/units.h"
 #include "core/detection/detection_limits.h"
@@ -94,16 +95,17 @@ class TrailSearch {
     }
   }
 
-  /// Fits all again, each without the light of the others.
-  void polish() {
+  /// Fits all again, each without the light of the others. `last`: nothing is found afterwards.
+  void polish(bool last) {
+    const auto add = last ? &Starlight::add_electrons : &Starlight::add;
     std::vector<TrailedStar> kept;
     for (TrailedStar& star : stars_) {
       if (is_spent()) return;
-      light_.add(star.trail, -1.0);
+      (light_.*add)(star.trail, -1.0);
       const auto again = fitted(star.trail, scene_.psf.at({star.trail.x_px, star.trail.y_px}));
       if (again) star = star_of(*again);
       if (star.trail.flux_e < 3 * star.flux_sigma_e) continue;
-      light_.add(star.trail, 1.0);
+      (light_.*add)(star.trail, 1.0);
       kept.push_back(star);
     }
     stars_ = std::move(kept);
@@ -112,11 +114,13 @@ class TrailSearch {
   std::vector<TrailedStar> take() { return std::move(stars_); }
 
  private:
-  static constexpr int step_px = 2;  // of the scan
+  static constexpr int step_px = 2;      // of the scan
+  static constexpr int same_trail = 16;  // steps in which trails hardly differ
 
   /// SNR of the light along a trail without its brightest quarter, which may be of something else.
-  double score_at(double x, double y) const {
-    const Trail t = scene_.star_trail(x, y);
+  double score_at(double x, double y) const { return score_at(x, y, scene_.star_trail(x, y)); }
+
+  double score_at(double x, double y, const Trail& t) const {
     const int samples = std::max(8, int(std::lround(t.length_px)));
     const double ux = std::cos(t.angle_rad), uy = std::sin(t.angle_rad);
     std::array<double, 4> sum{};
@@ -154,6 +158,34 @@ class TrailSearch {
     return total / std::sqrt(variance_[std::size_t(all)]);
   }
 
+  /// Scores of places that follow each other by the scan's step and have the same trail.
+  void score_row(double x, double y, const Trail& t, std::span<float> scores) const {
+    const int samples = std::max(8, int(std::lround(t.length_px)));
+    const double ux = std::cos(t.angle_rad), uy = std::sin(t.angle_rad);
+    const double reach_px = t.length_px / 2 + 1;
+    const double last_x = x + double(scores.size()) * step_px;
+    if (std::min({x, y, scene_.counts.columns - 1 - last_x, scene_.counts.rows - 1 - y}) <=
+        reach_px) {
+      for (std::size_t k = 0; k < scores.size(); ++k)
+        scores[k] = float(score_at(x + double(k) * step_px, y, t));
+      return;
+    }
+    std::array<std::array<float, same_trail>, 4> sums{};
+    std::array<int, 4> count{};
+    for (int i = 0; i < samples; ++i) {
+      const double along = ((i + 0.5) / samples - 0.5) * t.length_px;
+      const float* snr = light_.snr_from(nearest(x + along * ux), nearest(y + along * uy));
+      const auto quarter = std::size_t(4 * i / samples);
+      for (std::size_t k = 0; k < scores.size(); ++k)
+        sums[quarter][k] += snr[k * std::size_t(step_px)];
+      ++count[quarter];
+    }
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      const std::array<double, 4> sum{sums[0][k], sums[1][k], sums[2][k], sums[3][k]};
+      scores[k] = float(score_of(sum, count, samples));
+    }
+  }
+
   double reads_of_scan() const {
     const double px = (scene_.counts.columns + 2 * reach_.out_x_px) *
                       (scene_.counts.rows + 2 * reach_.out_y_px) / (step_px * step_px);
@@ -167,9 +199,12 @@ class TrailSearch {
     std::vector<float> scores(std::size_t(wide) * std::size_t(high));
     const auto at = [&](int i, int j) { return scores[std::size_t(j * wide + i)]; };
     for (int j = 0; j < high; ++j)
-      for (int i = 0; i < wide; ++i)
-        scores[std::size_t(j * wide + i)] =
-            float(score_at(i * step_px - out_x, j * step_px - out_y));
+      for (int i = 0; i < wide; i += same_trail) {
+        const double x = i * step_px - out_x, y = j * step_px - out_y;
+        const Trail t = scene_.star_trail(x + same_trail / 2 * step_px, y);
+        const std::size_t many = std::size_t(std::min(same_trail, wide - i));
+        score_row(x, y, t, {&scores[std::size_t(j * wide + i)], many});
+      }
     for (int j = 0; j < high; ++j)
       for (int i = 0; i < wide; ++i) {
         const float here = at(i, j);
@@ -390,10 +425,10 @@ bool stars_trail(const Scene& scene) {
 std::vector<TrailedStar> find_trailed_stars(const Scene& scene) {
   TrailSearch search(scene);
   search.find(first_snr);
-  search.polish();
+  search.polish(false);
   search.find(last_snr);
-  search.polish();
-  search.polish();
+  search.polish(true);
+  search.polish(true);
   if (search.is_spent()) return {};
   return search.take();
 }
@@ -401,7 +436,7 @@ std::vector<TrailedStar> find_trailed_stars(const Scene& scene) {
 StarlessFrame without_stars(const Scene& scene, const std::vector<TrailedStar>& stars) {
   constexpr double noisier = 0.5;  // share of a pixel's variance
   Starlight light(scene);
-  for (const TrailedStar& star : stars) light.add(star.trail, 1.0);
+  for (const TrailedStar& star : stars) light.add_electrons(star.trail, 1.0);
   StarlessFrame out{scene.counts, BitMask(scene.counts.columns, scene.counts.rows)};
   for (int y = 0; y < scene.counts.rows; ++y)
     for (int x = 0; x < scene.counts.columns; ++x) {
