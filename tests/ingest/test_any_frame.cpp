@@ -107,8 +107,8 @@ TEST(AnyFrame, MirroredFramesOfAMountAtRestKeepTheirStars) {
   ASSERT_EQ(found.size(), 2u);  // both streaks that were drawn
   const std::array<PixelPosition, 2> drawn = {{{150, 300}, {330, 120}}};
   for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_NEAR(found[i].x_px, drawn[i].x_px, 4 * std::sqrt(found[i].covariance_px2[0]));
-    EXPECT_NEAR(found[i].y_px, rows - 1 - drawn[i].y_px, 4 * std::sqrt(found[i].covariance_px2[2]));
+    EXPECT_NEAR(found[i].x_px, drawn[i].x_px, 3 * std::sqrt(found[i].covariance_px2[0]));
+    EXPECT_NEAR(found[i].y_px, rows - 1 - drawn[i].y_px, 3 * std::sqrt(found[i].covariance_px2[2]));
   }
   ASSERT_FALSE(expected.empty());
   EXPECT_NEAR(found[0].dec_rad, expected[0].dec_rad, 1 / focal_px);
