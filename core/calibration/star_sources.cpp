@@ -13,6 +13,9 @@
 #include "core/calibration/source_measure.h"
 #include "core/detection/background.h"
 #include "core/detection/components.h"
+#include "core/detection/detection_limits.h"
+#include "core/detection/psf_measure.h"
+#include "core/detection/trailed_stars.h"
 
 namespace dmise {
 namespace {
@@ -119,10 +122,40 @@ StarImages::StarImages(const CountImage& counts, const StarSourceSettings& setti
   sigma_px_ = best_sigma_px(measure_, moments_, widths.empty() ? filter_px : median_of(widths));
 }
 
+/// The middles of trails in a frame whose stars trail; none where they do not.
+std::vector<PlateSource> sources_of_trails(const CountImage& counts,
+                                           const StarSourceSettings& settings, Threads& threads) {
+  constexpr double usual_fwhm_px = 2.0;
+  const Background background(counts, detection_limits::background_cell_px, threads);
+  const double fwhm_px = settings.psf_fwhm_px > 0 ? settings.psf_fwhm_px : usual_fwhm_px;
+  Scene scene{counts,
+              background,
+              *settings.motion,
+              settings.gain_e_per_dn,
+              settings.saturation_dn,
+              sigma_with_pixel(fwhm_px),
+              false,
+              PsfField::gaussian(fwhm_px)};
+  if (!stars_trail(scene)) return {};
+  scene.use(measure_psf(
+      scene, find_components(counts, background, scene.sigma_px, detection_limits::connect_snr,
+                             detection_limits::seed_snr, threads)));
+  std::vector<PlateSource> sources;
+  for (const TrailedStar& star : find_trailed_stars(scene))
+    if (star.trail.flux_e > settings.least_snr * star.flux_sigma_e)
+      sources.push_back({star.trail.x_px, star.trail.y_px, star.trail.flux_e, star.covariance_px2,
+                         star.flux_sigma_e, false});
+  std::ranges::stable_sort(sources, std::greater(), &PlateSource::flux);
+  if (sources.size() > settings.most) sources.resize(settings.most);
+  return sources;
+}
+
 }  // namespace
 
 std::vector<PlateSource> find_star_sources(const CountImage& counts,
                                            const StarSourceSettings& settings, Threads& threads) {
+  if (settings.motion && settings.unknown_mount)
+    if (auto trails = sources_of_trails(counts, settings, threads); !trails.empty()) return trails;
   const StarImages images(counts, settings, threads);
   const SourceMeasure& measure = images.measure();
   const double sigma_px = images.sigma_px();

@@ -17,6 +17,7 @@ struct StarSourceSettings {
   double least_snr = 6.0;
   std::size_t most = 2000;  // the brightest, and further ones until as many are not saturated
   const StarMotion* motion = nullptr;  // short trails that images have, if known
+  bool unknown_mount = false;          // long trails are found as such
 };
 
 /// Returns stars, and sources that look like them, by falling flux [e-]. Places are of a fitted

@@ -21,6 +21,7 @@
 #include "core/detection/source_fit.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/template_snr.h"
+#include "core/detection/trailed_stars.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -37,6 +38,11 @@ void hide(FilteredFrame& frame, const PixelMask& unusable) {
   for (int y = 0; y < frame.rows; ++y)
     for (int x = 0; x < frame.columns; ++x)
       if (unusable.at(x, y)) frame.hide(y, x, x);
+}
+
+void hide(FilteredFrame& frame, const BitMask& mask) {
+  for (int y = 0; y < frame.rows; ++y)
+    mask.for_set(y, 0, frame.columns, [&](int x) { frame.hide(y, x, x); });
 }
 
 /// Whether an end of a streak is so near the frame's edge that it may be beyond it.
@@ -105,6 +111,86 @@ bool is_lost_in_its_errors(const Scene& scene, const FrameHeader& header, Source
          template_snr(scene, source.trail()) < detection_limits::sure_snr;
 }
 
+std::vector<Component> components_of(const Scene& scene, FilteredFrame& filtered,
+                                     Threads& threads) {
+  return find_components(scene.counts, scene.background, filtered.sigma_px,
+                         detection_limits::connect_snr, detection_limits::seed_snr, threads,
+                         &filtered);
+}
+
+/// Detects in a prepared frame. `known`: the stars that were subtracted from it; null: none.
+void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
+               const std::vector<Component>& components, const KnownStars* known,
+               const FrameHeader& header, Threads& threads, DetectionResult& result) {
+  if (known) {
+    // Between the stars the background is lower and has less noise.
+    background.measure_without(known->lit(), scene.counts, threads);
+    filtered.flatten(threads, &known->lit());
+    scene.flat = &filtered;
+    scene.known = known;
+  }
+  Judged judged = judge_components(scene, filtered, components, threads);
+  for (Source& source : judged.sources) extend(scene, filtered, source);
+  judged.star_like += std::uint32_t(std::erase_if(
+      judged.sources, [&](const Source& source) { return is_row_of_stars(scene, source); }));
+  for (std::size_t i = 0; i < components.size(); ++i)
+    if (judged.reach_px[i]) hide(filtered, components[i], *judged.reach_px[i]);
+  for (const auto& area : background.bent_cells(detection_limits::most_bend_in_noise))
+    for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
+  if (!known) filtered.flatten(threads);
+  for (Source& source : find_faint_streaks(scene, filtered, threads))
+    judged.sources.push_back(std::move(source));
+  const std::vector<Source> others = judged.sources;
+  for (Source& source : judged.sources)
+    source = with_likelier_ends(scene, std::move(source), others);
+  result.report = make_report(scene.counts, header, background, scene.psf);
+  result.report.star_like = judged.star_like;
+  result.report.stars_expected = std::uint32_t(result.stars.expected);
+  result.report.stars_found = std::uint32_t(result.stars.found);
+  for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
+    if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
+    source.at_edge |= may_leave(scene.counts, source);
+    const auto ends = errors_of_faint_ends(scene, source);
+    Source seen = source;  // with errors that do not depend on the noise beside its ends
+    add_steps_at_ends(seen, scene.sigma_px);
+    add_errors_of_hidden_ends(scene, seen);
+    if (seen.snr() < detection_limits::least_light_snr) continue;
+    add_neglected_errors(source, ends ? &*ends : nullptr);
+    if (is_lost_in_its_errors(scene, header, source)) continue;
+    if (!ends) add_errors_of_hidden_ends(scene, source);
+    if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
+    add_detection(describe(source, header), header, result.detections);
+  }
+  result.report.detections = std::uint32_t(result.detections.size());
+}
+
+/// Detects in a frame less its stars' trails, which it shows itself. Returns false if there are
+/// none or too many to find in bounded time.
+bool detect_among_trails(const Scene& with_stars, const FrameHeader& header, Threads& threads,
+                         DetectionResult& result) {
+  const std::vector<TrailedStar> stars = find_trailed_stars(with_stars);
+  if (stars.empty()) return false;
+  StarlessFrame frame = without_stars(with_stars, stars);
+  Background background(frame.counts, detection_limits::background_cell_px, threads);
+  Scene scene{frame.counts,
+              background,
+              with_stars.stars,
+              with_stars.gain_e_per_dn,
+              with_stars.saturation_dn,
+              with_stars.sigma_px,
+              with_stars.blooming,
+              with_stars.psf,
+              with_stars.unusable};
+  FilteredFrame filtered(frame.counts.columns, frame.counts.rows, scene.sigma_px);
+  const auto components = components_of(scene, filtered, threads);
+  if (scene.unusable) hide(filtered, *scene.unusable);
+  hide(filtered, frame.lit);
+  const KnownStars known(std::move(frame.lit));
+  detect_in(scene, background, filtered, components, &known, header, threads, result);
+  result.report.star_like += std::uint32_t(stars.size());
+  return true;
+}
+
 }  // namespace
 
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
@@ -122,54 +208,18 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
               PsfField::gaussian(header.psf_fwhm_px),
               unusable};
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
-  const auto components =
-      find_components(counts, background, scene.sigma_px, detection_limits::connect_snr,
-                      detection_limits::seed_snr, threads, &filtered);
+  const auto components = components_of(scene, filtered, threads);
   scene.use(measure_psf(scene, components));
   if (scene.unusable) hide(filtered, *scene.unusable);
   DetectionResult result;
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
-  if (known) {
-    // Between the stars the background is lower and has less noise.
-    background.measure_without(known->lit(), counts, threads);
-    filtered.flatten(threads, &known->lit());
-    scene.flat = &filtered;
-    scene.known = &*known;
-  }
-  Judged judged = judge_components(scene, filtered, components, threads);
-  for (Source& source : judged.sources) extend(scene, filtered, source);
-  judged.star_like += std::uint32_t(std::erase_if(
-      judged.sources, [&](const Source& source) { return is_row_of_stars(scene, source); }));
-  for (std::size_t i = 0; i < components.size(); ++i)
-    if (judged.reach_px[i]) hide(filtered, components[i], *judged.reach_px[i]);
-  for (const auto& area : background.bent_cells(detection_limits::most_bend_in_noise))
-    for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
-  if (!known) filtered.flatten(threads);
-  for (Source& source : find_faint_streaks(scene, filtered, threads))
-    judged.sources.push_back(std::move(source));
-  const std::vector<Source> others = judged.sources;
-  for (Source& source : judged.sources)
-    source = with_likelier_ends(scene, std::move(source), others);
-  result.report = make_report(counts, header, background, scene.psf);
-  result.report.star_like = judged.star_like;
-  result.report.stars_expected = std::uint32_t(result.stars.expected);
-  result.report.stars_found = std::uint32_t(result.stars.found);
-  for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
-    if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
-    source.at_edge |= may_leave(counts, source);
-    const auto ends = errors_of_faint_ends(scene, source);
-    Source seen = source;  // with errors that do not depend on the noise beside its ends
-    add_steps_at_ends(seen, scene.sigma_px);
-    add_errors_of_hidden_ends(scene, seen);
-    if (seen.snr() < detection_limits::least_light_snr) continue;
-    add_neglected_errors(source, ends ? &*ends : nullptr);
-    if (is_lost_in_its_errors(scene, header, source)) continue;
-    if (!ends) add_errors_of_hidden_ends(scene, source);
-    if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
-    add_detection(describe(source, header), header, result.detections);
-  }
-  result.report.detections = std::uint32_t(result.detections.size());
+  // Of an unknown mount the frame itself has shown the trails, and more stars than a catalogue.
+  if (header.mount == "unknown" && stars_trail(scene) &&
+      detect_among_trails(scene, header, threads, result))
+    return result;
+  detect_in(scene, background, filtered, components, known ? &*known : nullptr, header, threads,
+            result);
   return result;
 }
 

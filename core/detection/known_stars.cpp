@@ -17,7 +17,7 @@ KnownStars::KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::
 }
 
 bool KnownStars::would_know(PixelPosition place, double flux_e) const {
-  return flux_e >= complete_to_e(*sky_, *header_, place);
+  return sky_ && flux_e >= complete_to_e(*sky_, *header_, place);
 }
 
 bool KnownStars::may_be_at(PixelPosition place, double within_px, double flux_e) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <utility>
 #include <vector>
 
 #include "core/detection/bit_mask.h"
@@ -20,6 +21,9 @@ class KnownStars {
   KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::vector<Star> stars,
              BitMask lit);
 
+  /// Stars that the frame itself has shown: a catalogue would know no others.
+  explicit KnownStars(BitMask lit) : lit_(std::move(lit)) {}
+
   bool lights(int x, int y) const { return lit_.at(x, y); }
   const BitMask& lit() const { return lit_; }
   /// Whether a star of this light at a place would be in the catalogue.
@@ -28,8 +32,8 @@ class KnownStars {
   bool may_be_at(PixelPosition place, double within_px, double flux_e) const;
 
  private:
-  const CatalogueSky* sky_;
-  const FrameHeader* header_;
+  const CatalogueSky* sky_ = nullptr;  // null: there is no catalogue
+  const FrameHeader* header_ = nullptr;
   std::vector<Star> stars_;  // by rising row
   BitMask lit_;
 };

