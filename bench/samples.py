@@ -1,6 +1,8 @@
 """Samples a second in memory, by two processes that map over seeds, beside those of `dmise dataset` with two workers.
 
     python3 bench/samples.py [NUMBER]      of a build in build/release and build/python; by default 200 samples, three times
+
+Where torch is installed, also those of a DataLoader with two workers, whose time includes their start.
 """
 import functools
 import multiprocessing
@@ -13,7 +15,12 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "build/python"))
-from dmise.datasets import map_seed  # noqa: E402
+from dmise.datasets import FrameStream, map_seed  # noqa: E402
+
+try:
+    from torch.utils.data import DataLoader
+except ImportError:
+    DataLoader = None
 
 SCENARIO, WORKERS = ROOT / "launch/scenarios/dataset.yaml", 2
 
@@ -48,11 +55,21 @@ def mapped(number, work=functools.partial(map_seed, SCENARIO)):
         pool.join()
 
 
+def loaded(number):
+    """Batches of images and masks, as a training takes them."""
+    loader = DataLoader(FrameStream(SCENARIO, range(1, number + 1)), batch_size=8, num_workers=WORKERS)
+    if sum(len(images) for images, _ in loader) != number:
+        raise SystemExit("samples are missing")
+
+
 def main():
+    ways = [("dmise dataset", written), ("map_seed, samples sent back", mapped),
+            ("map_seed, samples used where they are made", functools.partial(mapped, work=size_of))]
+    if DataLoader:
+        ways.append(("FrameStream under torch's DataLoader", loaded))
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 200
     for _ in range(3):
-        for name, make in (("dmise dataset", written), ("map_seed, samples sent back", mapped),
-                           ("map_seed, samples used where they are made", functools.partial(mapped, work=size_of))):
+        for name, make in ways:
             rate, used_s = measured(make, number)
             print(f"{name:45} {rate:7.1f} samples/s {number / used_s:7.1f} samples a processor second", flush=True)
 

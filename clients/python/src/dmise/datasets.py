@@ -71,14 +71,21 @@ class Sample:
 class Dataset:
     """The frames of a data set, by number; may be passed to other processes."""
 
-    def __init__(self, directory: str | pathlib.Path) -> None:
-        self.directory = pathlib.Path(directory)
-        path = self.directory / "dataset.json"
+    def __init__(self, directory: str | pathlib.Path, storage_options: Mapping[str, Any] | None = None) -> None:
+        self._files: Any = None
+        self.directory = pathlib.PurePath(directory)
+        if "://" in str(directory):
+            from .shard_store import file_system
+
+            self._files, root = file_system(str(directory), storage_options)
+            self.directory = pathlib.PurePosixPath(root)
+        path = f"{os.fspath(directory).rstrip('/')}/dataset.json"
         try:
-            self.info: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            with self._open("dataset.json") as file:
+                self.info: dict[str, Any] = json.loads(file.read())
             self._ends = list(itertools.accumulate(shard["frames"] for shard in self.info["shards"]))
         except OSError as error:
-            raise FileNotFoundError(f"{path}: {error.strerror}; is this the directory of a complete data set?") from None
+            raise FileNotFoundError(f"{path}: {error.strerror or 'cannot be read'}; is this the directory of a complete data set?") from None
         except (ValueError, TypeError, KeyError) as error:
             raise ValueError(f"{path}: not the manifest of a data set: {error}") from None
         self._members: dict[int, list[dict[str, tuple[int, int]]]] = {}
@@ -95,11 +102,11 @@ class Dataset:
         index %= len(self)
         shard = bisect.bisect_right(self._ends, index)
         members = self._members_of(shard)[index - (self._ends[shard - 1] if shard else 0)]
-        with open(self._path(shard), "rb") as file:
+        with self._open(self._name(shard)) as file:
             def content(ending: str) -> bytes:
                 offset, size = members[ending]
                 file.seek(offset)
-                return file.read(size)
+                return bytes(file.read(size))
 
             labels = json.loads(content("labels.json"))
             return Sample(labels["key"], numpy.load(io.BytesIO(content("image.npy"))),
@@ -109,20 +116,25 @@ class Dataset:
         """Raises ValueError for a file that is not what the manifest says."""
         for entry in [*self.info["shards"], self.info["coco"]]:
             sha = hashlib.sha256()
-            with open(self.directory / entry["name"], "rb") as file:
+            with self._open(entry["name"]) as file:
                 while piece := file.read(1 << 20):
                     sha.update(piece)
             if sha.hexdigest() != entry["sha256"]:
                 raise ValueError(f"{self.directory / entry['name']}: its SHA-256 is not that of dataset.json")
 
-    def _path(self, shard: int) -> pathlib.Path:
-        return self.directory / self.info["shards"][shard]["name"]
+    def _open(self, name: str) -> Any:
+        """A file of the data set, of bytes."""
+        path = str(self.directory / name)
+        return open(path, "rb") if self._files is None else self._files.open(path, "rb")
+
+    def _name(self, shard: int) -> str:
+        return str(self.info["shards"][shard]["name"])
 
     def _members_of(self, shard: int) -> list[dict[str, tuple[int, int]]]:
         """Places in the archive of each frame's files, by ending."""
         if shard not in self._members:
             frames: dict[str, dict[str, tuple[int, int]]] = {}
-            with tarfile.open(self._path(shard), "r:") as archive:
+            with self._open(self._name(shard)) as file, tarfile.open(fileobj=file, mode="r:") as archive:
                 for member in archive:
                     key, _, ending = member.name.partition(".")
                     frames.setdefault(key, {})[ending] = (member.offset_data, member.size)
@@ -130,9 +142,26 @@ class Dataset:
         return self._members[shard]
 
 
-def open_dataset(directory: str | pathlib.Path) -> Dataset:
-    """The data set in a directory. Raises FileNotFoundError for one that is not complete."""
-    return Dataset(directory)
+def open_dataset(directory: str | pathlib.Path, storage_options: Mapping[str, Any] | None = None) -> Dataset:
+    """The data set in a directory, or at a URL of fsspec: "s3://bucket/prefix". `storage_options` are those of its file
+    system. Raises FileNotFoundError for one that is not complete."""
+    return Dataset(directory, storage_options)
+
+
+def write_shards(scenario: Scenario, seeds: range, url: str, *, per_shard: int = 100, shard: str = "1/1", workers: int | None = None,
+                 storage_options: Mapping[str, Any] | None = None) -> bool:
+    """Makes the data set of `dmise dataset` at a URL of fsspec: "s3://bucket/prefix", "gs://..", a directory.
+
+    per_shard, shard, workers   as of the command; tasks with shards 1/n .. n/n may run on n machines at the same time
+    storage_options             of the file system: {"endpoint_url": ..}
+
+    Of this machine's disk it takes one archive. The same call continues after an interruption, at the archive that was being
+    made; one with more seeds adds them. Returns whether the data set is complete. Raises `ScenarioError` for a scenario that is
+    not valid and for a URL that has another data set, ImportError if the file system's package is missing.
+    """
+    from .shard_store import write
+
+    return write(scenario, seeds, url, per_shard, shard, workers, storage_options)
 
 
 def image_and_mask(sample: Sample) -> tuple[ArrayLike, ArrayLike]:
@@ -143,8 +172,9 @@ def image_and_mask(sample: Sample) -> tuple[ArrayLike, ArrayLike]:
 class FrameDataset:
     """A map-style Dataset of PyTorch; `transform(sample)` makes of a `Sample` what a model takes."""
 
-    def __init__(self, directory: str | pathlib.Path, transform: Callable[[Sample], Any] | None = None) -> None:
-        self.samples = open_dataset(directory)
+    def __init__(self, directory: str | pathlib.Path, transform: Callable[[Sample], Any] | None = None,
+                 storage_options: Mapping[str, Any] | None = None) -> None:
+        self.samples = open_dataset(directory, storage_options)
         self.transform = transform or image_and_mask
 
     def __len__(self) -> int:
