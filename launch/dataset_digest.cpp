@@ -5,7 +5,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/version.h"
-#include "launch/run_directory.h"
+#include "launch/file_digest.h"
 
 namespace dmise {
 

@@ -13,7 +13,7 @@
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/node_kinds.h"
-#include "core/sky/star_map_file.h"
+#include "launch/file_digest.h"
 
 namespace dmise {
 namespace {
@@ -100,14 +100,10 @@ std::vector<std::string> whole_lines(const std::string& path) {
   return lines;
 }
 
-std::string file_digest(const std::string& path) {
-  return sha256_hex(is_star_map_file(path) ? star_map_fingerprint(path) : read_text_file(path));
-}
-
 std::string scenario_digest(const Scenario& scenario) {
   std::string all = physics_json(scenario);
   for (const auto& path : files_of(scenario.objects, scenario.own_objects))
-    all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
+    all += "\n" + (path.empty() ? std::string("none") : file_digest(path));
   for (const auto& path : files_of(scenario.own_nodes))
     all += "\n" + sha256_hex(read_text_file(path));
   for (const auto& path : {scenario.star_catalogue_path, scenario.earth_orientation_path})

@@ -53,9 +53,6 @@ class RunDirectory {
   std::unique_ptr<RunLock> lock_;
 };
 
-/// SHA-256 of a catalogue's file; of an index of stars that of its checksums.
-std::string file_digest(const std::string& path);
-
 /// Digest of everything that determines the products: the resolved scenario and the bytes of its
 /// catalogues; the first 128 bits of their SHA-256.
 std::string scenario_digest(const Scenario& scenario);

@@ -4,7 +4,7 @@
 #include "core/base/user_directories.h"
 #include "core/config/search_path.h"
 #include "core/config/star_catalogues.h"
-#include "core/sky/star_cache.h"
+#include "core/sky/shared_star_map.h"
 
 namespace dmise {
 
@@ -15,7 +15,7 @@ std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name,
   const char* file = star_catalogue_file(named);
   const std::string path = file ? find_catalogue(file) : named;
   if (path.empty()) throw ConfigError(option + ": " + missing_star_catalogue(named));
-  return std::make_shared<const StarMap>(load_star_map(path, cache_directory()));
+  return share_star_map(path, cache_directory());
 }
 
 }  // namespace dmise

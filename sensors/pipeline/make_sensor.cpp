@@ -6,6 +6,7 @@
 #include "core/base/user_directories.h"
 #include "core/config/make_clock.h"
 #include "core/photometry/band_parts.h"
+#include "core/sky/shared_star_map.h"
 
 namespace dmise {
 namespace {
@@ -20,8 +21,7 @@ OutputConfig without_images(const OutputConfig& output) {
 std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
   if (scenario.star_catalogue_path.empty()) return nullptr;
   try {
-    return std::make_shared<const StarMap>(
-        load_star_map(scenario.star_catalogue_path, cache_directory()));
+    return share_star_map(scenario.star_catalogue_path, cache_directory());
   } catch (const Error& e) {
     if (scenario.star_catalogue_where.empty()) throw;
     throw ConfigError(scenario.star_catalogue_where + ": " + e.what());

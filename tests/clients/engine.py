@@ -476,6 +476,22 @@ class Frames(unittest.TestCase):
             self.assertLess(time.monotonic() - sent[0], 1.0)
             self.assertTrue(dmise.engine.core.wait_for_detached(60.0))
 
+    def test_a_catalogue_that_changes_is_read_anew(self):
+        def frame_of(stars):
+            text = "ra_deg,dec_deg,mag_v\n" + "".join(f"{ra:.4f},{dec:.4f},5\n" for ra, dec in stars)
+            path.write_text(text)
+            sim = dmise.Simulation(SCENARIO.replace("kstars", str(path)).replace("duration_s: 30", "duration_s: 10"))
+            return sim.digest, next(sim.frames("west")).counts.astype(float).max()
+
+        path = pathlib.Path(self.directory.name) / "stars.csv"
+        report = next(dmise.Simulation(SCENARIO).frames("west")).report
+        middle = np.degrees([report.boresight_ra_rad, report.boresight_dec_rad])
+        middle[0] %= 360.0
+        in_frame, out_of_it = frame_of([middle]), frame_of([((middle[0] + 90.0) % 360.0, middle[1])])
+        self.assertNotEqual(in_frame[0], out_of_it[0])
+        self.assertGreater(in_frame[1], 10 * out_of_it[1])
+        self.assertEqual(frame_of([middle]), in_frame)
+
     @unittest.skipIf(SANITIZED, "what is freed is kept")
     def test_memory_is_flat_over_seeds(self):
         def make(seeds):
