@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 
 FIRST_FRAME = """\
 import pathlib, dmise
@@ -42,8 +43,18 @@ def whole_demonstration(out):
     return len(sensors) == 4 and all(path.stat().st_size > 0 for path in files)
 
 
+def check_licences(wheel):
+    with zipfile.ZipFile(wheel) as packed:
+        names = packed.namelist()
+        libraries = [name.split("/")[1] for name in names if name.startswith("dmise.libs/")]
+        licences = packed.read(next(name for name in names if name.endswith("licenses/LIBRARIES"))).decode()
+    lacking = [name for name in libraries if f"{name}: " not in licences]
+    check(libraries and not lacking, f"each of {len(libraries)} libraries has a licence {lacking or ''}")
+
+
 def main(most_mb):
     (wheel,) = pathlib.Path(__file__).parent.glob("*.whl")
+    check_licences(wheel)
     mb = wheel.stat().st_size / 1e6
     check(mb <= most_mb, f"size {mb:.1f} MB, asked <= {most_mb:.0f} ({wheel.name})")
     with tempfile.TemporaryDirectory() as directory:
