@@ -358,6 +358,12 @@ TEST(Coordinator, KeepsTheFirstCause) {
   EXPECT_EQ(master.cause(), "camera: disk full");
 }
 
+TEST(Coordinator, SaysTheNameOfTheNodeThatFailsOnce) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.fail("camera", "camera: disk full");
+  EXPECT_EQ(master.cause(), "camera: disk full");
+}
+
 TEST(Coordinator, FailsWhenANodeLeavesBeforeTheEnd) {
   Coordinator master = started(options({"orbit", "camera"}));
   master.leave("camera", true);
