@@ -69,7 +69,7 @@ def check_schedule(binary, directory, seed, number):
     detects, command = number // 8 % 2, ("run", "launch")[number // 16 % 2]
     fault, policy = (of_detector if detects else of_actor), rng.choice(("fail", "restart"))
     scenario, at = (write_detector if detects else write_actor)(directory, number, rng, fault, policy)
-    place = rf"peaks: frame {at} \(tick \d+\): " if detects else rf"gnc: tick {'[0-9]+( to [0-9]+)?' if fault.startswith('SIG') else at}: "
+    place = rf"peaks: frame {at} \(tick \d+\): " if detects else r"gnc: tick (?P<first>\d+)(?: to (?P<last>\d+))?: "
     told = f"{number}: {command}, {'detector' if detects else 'actor'}, {policy}, {fault} at {at}"
     out = directory / f"run-{number}"
     with Run(binary, command, scenario, "--allow-programs", "--out", out) as run:
@@ -82,7 +82,10 @@ def check_schedule(binary, directory, seed, number):
     found = re.search(place + words, last)
     silent_s = float(found["silent"]) if found and fault == "SIGSTOP" else 0.0
     limit_s = own_detector.SILENT_AFTER_S if detects else own_actor.SILENT_AFTER_S
-    check(code == 1 and found and silent_s < limit_s + LATER_S, f"{told}: code {code}: {last}")
+    ticks = (int(found["first"]), int(found["last"] or found["first"])) if found and not detects else (at, at)
+    asked_ahead = ticks[0] < ticks[1] and fault.startswith("SIG")  # a program that dies may be at any tick that it was asked for
+    check(code == 1 and found and ticks[0] <= at <= ticks[1] and (asked_ahead or ticks == (at, at)) and silent_s < limit_s + LATER_S,
+          f"{told}: code {code}: {last}")
 
 
 def test(binary, directory):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import datetime
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,14 @@ def pole_of(time_utc: datetime.datetime) -> Floats:
     """The Earth's pole, GCRS unit vector: its precession, IAU 2006, without nutation, to 0.3 arcmin for a century."""
     x = _POLE_RATE_RAD_PER_S * (time_utc.replace(tzinfo=None) - _J2000).total_seconds()
     return np.array([x, 0.0, math.sqrt(1.0 - x * x)])
+
+
+def rotation_matrix(quaternion: Sequence[float] | Floats) -> Floats:
+    """3 x 3, of a unit quaternion w, x, y, z: the matrix of v' = q v q*."""
+    w, x, y, z = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
 def acceleration(position_m: Floats, pole: Floats) -> Any:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from .dynamics import rotation_matrix
 from .own_node import World, actor, serve
 from .own_states import State
 from .records import Floats
@@ -101,14 +102,6 @@ class Unit:
         self._fmu.freeFMUState(state)
 
 
-def body_from_gcrs(gcrs_from_body: Floats) -> Floats:
-    """Rotation matrix of a unit quaternion w, x, y, z with v_gcrs = q v_body q*."""
-    w, x, y, z = gcrs_from_body
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
-                     [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
-                     [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]])
-
-
 def needed_by(name: str) -> set[str]:
     """The outputs without which there is no input of this name."""
     return {key for word, key in (("position", "position_m"), ("velocity", "velocity_m_per_s"), ("earth", "position_m"),
@@ -128,7 +121,7 @@ def source(name: str, t_s: float, world: World, own: Mapping[str, Floats]) -> fl
     body_m = {"sun": world.environment.sun_m, "moon": world.environment.moon_m, "earth": np.zeros(3)}[what]
     direction = body_m - own.get("position_m", np.zeros(3))
     if frame == ["body"]:
-        direction = body_from_gcrs(own["gcrs_from_body"]) @ direction
+        direction = rotation_matrix(own["gcrs_from_body"]).T @ direction
     return float(direction[AXES.index(axis)] / np.linalg.norm(direction))
 
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from . import protocol
 from .cards import CardValue, values_of
+from .dynamics import rotation_matrix
 from .own_served import Served, list_of, number_of, numbers_in, one_by_one, variance_of
 
 
@@ -65,15 +66,13 @@ class SensorFrame:
 
     @property
     def star_trail_px(self) -> npt.NDArray[np.float64]:
-        """x, y [px] by which the camera's turning moves a star in the middle of the frame, from start to end of the exposure."""
-        start, end = (np.array([float(self.header[f"Q{at}{k}"]) for k in range(4)]) for at in ("BEG", "END"))
-        star = _turned(end, _turned(start * (1, -1, -1, -1), np.array([0.0, 0.0, 1.0])))
-        return float(self.header["FOCALPX"]) * star[:2] / star[2]
+        """x, y [px] by which the camera's turning moves a star in the middle of the frame, from start to end of the exposure.
 
-
-def _turned(q: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """q v q* of a unit quaternion w, x, y, z."""
-    return v + 2 * np.cross(q[1:], np.cross(q[1:], v) + q[0] * v)
+        Of a turn of less than 90 degrees; not a number of a larger one.
+        """
+        start, end = (rotation_matrix([float(self.header[f"Q{at}{k}"]) for k in range(4)]) for at in ("BEG", "END"))
+        x, y, z = end @ start[2]  # the boresight at the start
+        return float(self.header["FOCALPX"]) * np.array([x, y]) / (z if z > 0 else np.nan)
 
 
 class Detector(Served):
