@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/base/user_directories.h"
 #include "core/sky/place_effects.h"
+#include "core/sky/star_cache.h"
 #include "core/sky/sun_moon.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "tests/pipeline/harness.h"
@@ -125,7 +127,8 @@ TEST(Stars, TheCacheIsKeptInTheUsersDirectoryAlsoTheFirstTime) {
   const std::string kept = before ? before : "";
   setenv("XDG_CACHE_HOME", (stage.directory / "not/there/yet").c_str(), 1);
   EXPECT_FALSE(load_stars(stage.scenario)->from_cache);
-  EXPECT_TRUE(load_stars(stage.scenario)->from_cache);
+  const std::string& catalogue = stage.scenario.star_catalogue_path;
+  EXPECT_TRUE(load_star_map(catalogue, cache_directory()).from_cache);
   before ? setenv("XDG_CACHE_HOME", kept.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
 }
 
