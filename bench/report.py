@@ -84,6 +84,7 @@ PAGE = {
         "demo_from_clone_s": "from a clone to the end of the demonstration",
         "build_processor_s": "processors' time to compile what the demonstration runs",
         "test_build_processor_s": "and all tests",
+        "tests_s": "from there until ./dmise test has built and passed everything",
         "incremental_s": "a change of one file of core, to a running test",
         "ci_minutes": "all checks of a commit",
     },

@@ -166,11 +166,12 @@ endfunction()
 set(DMISE_COMPUTING chrt --idle 0)
 file(STRINGS ${CMAKE_SOURCE_DIR}/tests/sanitizers/thread.txt DMISE_TIMED_TESTS)  # threads and sockets have deadlines
 
-# dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...]): a GoogleTest program, each TEST a ctest. Target
+# dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...] [LONG Suite.Test ..]): a GoogleTest program, each TEST a ctest. Those that
+# are LONG, by GoogleTest's patterns, have the label `all`: they run with `./dmise test --all`. Target
 # `unit_tests` builds them all, and unit-tests.txt in the build directory names them.
 add_custom_target(unit_tests)
 function(dmise_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LONG" ${ARGN})
   if(DMISE_UNITY)
     join_sources(ARG_SOURCES ${name} ${ARG_SOURCES})
   endif()
@@ -192,7 +193,12 @@ function(dmise_test name)
   if(NOT CMAKE_CROSSCOMPILING AND NOT name IN_LIST DMISE_TIMED_TESTS)
     set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${DMISE_COMPUTING}")
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300 PROPERTIES TIMEOUT 2400)
+  list(JOIN ARG_LONG ":" long)
+  gtest_discover_tests(${name} TEST_FILTER "-${long}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300 PROPERTIES TIMEOUT 2400)
+  if(long)
+    gtest_discover_tests(${name} TEST_FILTER "${long}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300
+                         PROPERTIES TIMEOUT 2400 LABELS all)
+  endif()
 endfunction()
 
 # join_sources(VARIABLE TARGET a.cpp ..): the few sources that hold all these, eight in each. What is no test stays alone, as do
