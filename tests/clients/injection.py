@@ -1,45 +1,28 @@
 """Objects in frames that are given: type, saturation, pixels without a value, mirrored frames, and bad input.
 
-    injection.py
+    injection.py [DMISE [TEST..]]
 """
 import io
-import pathlib
-import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "build/python"))
+import package
 
-try:
-    import astropy.io.fits
-    import numpy as np
-except ImportError as missing:
-    print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
-    sys.exit(77)
+package.require("astropy", "numpy", "dmise.engine")
+import astropy.io.fits  # noqa: E402
+import numpy as np  # noqa: E402
+
 import dmise  # noqa: E402
+from scenarios import sensor  # noqa: E402
 
-try:
-    import dmise.engine
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
-SCENARIO = """\
-simulation: {{start: 2018-01-21T03:00:00Z, duration_s: 10, tick_s: 5, seed: 7}}
-objects: [{{catalogue: demo, only: [GOES 13], radius_m: {radius_m}}}]
-stars: {{catalogue: kstars}}
-sensors:
-  - name: west
-    site: {{latitude_deg: 33, longitude_deg: -100, height_m: 300}}
-    camera:
-      optics: {{columns: 96, rows: 64, pixel_pitch_m: 9e-6, focal_length_m: 0.2, aperture_m: 0.1, psf_fwhm_px: 2}}
-      detector: {{quantum_efficiency: 0.6, read_noise_e: 5, full_well_e: 60000, gain_e_per_dn: 2, bias_dn: 100}}
-      band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
-    pointing: {{target: GOES 13, tracking: sidereal, roll_deg: 20, offset_deg: [0.02, -0.03]}}
-    exposure_s: 5
-    cadence_s: 10
-"""
-WITH, WITHOUT = SCENARIO.format(radius_m=2), SCENARIO.format(radius_m=1e-4)
+def night(radius_m):
+    return ("simulation: {start: 2018-01-21T03:00:00Z, duration_s: 10, tick_s: 5, seed: 7}\n"
+            f"objects: [{{catalogue: demo, only: [GOES 13], radius_m: {radius_m}}}]\nstars: {{catalogue: kstars}}\nsensors:\n" +
+            sensor("west", "{target: GOES 13, tracking: sidereal, roll_deg: 20, offset_deg: [0.02, -0.03]}", columns=96, rows=64,
+                   gain_e_per_dn=2, exposure_s=5))
+
+
+WITH, WITHOUT = night(2), night(1e-4)
 STATED = {"zero_point_mag": 20.0, "gain_e_per_dn": 2.0, "psf_fwhm_px": 2.0, "tracking": "sidereal", "catalogue": "none"}
 
 
@@ -91,9 +74,9 @@ class Injections(unittest.TestCase):
     def test_pixels_saturate(self):
         image = self.empty.counts.copy()
         image[0, 0] = 5000
-        made = dmise.inject(image, self.cards, SCENARIO.format(radius_m=200), saturation_dn=1000.0, **STATED)
+        made = dmise.inject(image, self.cards, night(200), saturation_dn=1000.0, **STATED)
         self.assertEqual((made.image[made.mask > 0].max(), made.image[0, 0]), (1000, 5000))
-        bright = dmise.inject(image.astype("u1"), self.cards, SCENARIO.format(radius_m=200), **STATED)
+        bright = dmise.inject(image.astype("u1"), self.cards, night(200), **STATED)
         self.assertEqual(bright.image.max(), 255)
 
     def test_pixels_without_a_value_stay(self):
@@ -162,4 +145,4 @@ class Injections(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    package.main()

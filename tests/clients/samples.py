@@ -12,43 +12,23 @@ import tempfile
 import types
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "build/python"))
+import package
 
-try:
-    import numpy as np
-except ImportError as missing:
-    print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
-    sys.exit(77)
+package.require("numpy", "dmise.engine")
+import numpy as np  # noqa: E402
+
 import dmise  # noqa: E402
-
-try:
-    import dmise.engine
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 from dmise.datasets import FrameStream, map_seed, open_dataset, stream  # noqa: E402
+from package import DMISE  # noqa: E402
+from scenarios import DRAWN_HEAD, drawn_sensor, sensor  # noqa: E402
 
-DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
-SENSOR = """\
-  - name: {name}
-    site: {{latitude_deg: {{uniform: [25, 40]}}, longitude_deg: -100, height_m: 300}}
-    camera:
-      optics: {{columns: 96, rows: 64, pixel_pitch_m: 9e-6, focal_length_m: 0.2, aperture_m: 0.1, psf_fwhm_px: 2}}
-      detector: {{read_noise_e: {{normal: {{mean: 6, sigma: 1, min: 3}}}}, full_well_e: 60000, gain_e_per_dn: 1, bias_dn: {{integers: [90, 110]}}}}
-      band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
-    pointing: {{target: {{one_of: [GOES 13, GOES 14]}}, tracking: fixed}}
-    exposure_s: {{log_uniform: [1, 8]}}
-    cadence_s: 10
-"""
-SCENARIO = """\
-simulation: {start: {uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}, duration_s: 20, tick_s: 10}
-objects: [{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]
-stars: {catalogue: kstars}
-output: {fits: off}
-sensors:
-""" + SENSOR.format(name="west") + SENSOR.format(name="east")
+COLUMNS, ROWS = 96, 64
+SCENARIO = "stars: {catalogue: kstars}\n" + DRAWN_HEAD + drawn_sensor("west", COLUMNS, ROWS) + drawn_sensor("east", COLUMNS, ROWS)
 SEEDS = range(5, 11)
+
+
+def key_of(sample):
+    return sample.key
 
 
 def as_bytes(sample):
@@ -95,16 +75,15 @@ class Samples(unittest.TestCase):
 
     def test_the_number_of_objects_is_drawn(self):
         """A choice among lists, one of which is empty: images with none, one and two."""
-        fixed = SCENARIO[:SCENARIO.index("  - name: east")].replace("{uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}",
-                                                                    "2018-01-21T03:00:00Z").replace("{uniform: [25, 40]}", "33")
+        def night(objects, pointing):
+            return ("simulation: {start: 2018-01-21T03:00:00Z, duration_s: 20, tick_s: 10}\n"
+                    f"objects: {objects}\nsensors:\n{sensor('west', pointing, columns=COLUMNS, rows=ROWS)}")
+
         alone = "{catalogue: demo, only: [GOES 13], radius_m: 3}"
-        simulated = fixed.replace("{log_uniform: [1, 8]}\n", "4\n").replace("{one_of: [GOES 13, GOES 14]}", "GOES 13")
-        simulated = simulated.replace("{normal: {mean: 6, sigma: 1, min: 3}}", "6").replace("{integers: [90, 110]}", "100")
-        report = next(dmise.Simulation(simulated.replace("{log_uniform: [1, 8]}", "3")).frames()).report
+        report = next(dmise.Simulation(night(f"[{alone}]", "{target: GOES 13, tracking: fixed}")).frames()).report
         there = f"{{ra_deg: {np.degrees(report.boresight_ra_rad)}, dec_deg: {np.degrees(report.boresight_dec_rad)}, tracking: fixed}}"
-        lists = f"{{one_of: [[], [{alone}], [{alone}, {{name: twin, radius_m: 3, motion: {{fixed: {{gcrs_m: [-4e7, 1e7, 0]}}}}}}]]}}"
-        drawn = fixed.replace("[{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]", lists)
-        drawn = drawn.replace("{target: {one_of: [GOES 13, GOES 14]}, tracking: fixed}", there)
+        twin = "{name: twin, radius_m: 3, motion: {fixed: {gcrs_m: [-4e7, 1e7, 0]}}}"
+        drawn = night(f"{{one_of: [[], [{alone}], [{alone}, {twin}]]}}", there)
         made = [sample for sample in stream(drawn, range(1, 13)) if sample.labels["frame"] == 1]
         self.assertEqual({int(sample.labels["drawn"]["objects.one_of"]) for sample in made}, {0, 1, 2})
         for sample in made:
@@ -138,8 +117,8 @@ class Samples(unittest.TestCase):
 
     def test_streams_give_what_a_model_takes(self):
         image, mask = next(iter(FrameStream(self.path, [6])))
-        self.assertEqual((image.dtype, image.shape, mask.dtype, mask.shape), (np.float32, (1, 64, 96), np.int64, (64, 96)))
-        keys = list(FrameStream(self.path, SEEDS, transform=lambda sample: sample.key, worker=1, workers=3))
+        self.assertEqual((image.dtype, image.shape, mask.dtype, mask.shape), (np.float32, (1, ROWS, COLUMNS), np.int64, (ROWS, COLUMNS)))
+        keys = list(FrameStream(self.path, SEEDS, transform=key_of, worker=1, workers=3))
         self.assertEqual(keys, [sample.key for sample in self.written if sample.labels["seed"] in (6, 9)])
 
     def test_bad_input_is_one_line(self):
@@ -161,9 +140,11 @@ class Samples(unittest.TestCase):
             from torch.utils.data import DataLoader
         except ImportError:
             self.skipTest("torch is not installed")
-        loader = DataLoader(FrameStream(self.path, SEEDS), batch_size=None, num_workers=2)
-        self.assertEqual(len(list(loader)), len(self.written))
+        stream_of_keys = FrameStream(self.path, SEEDS, transform=key_of)
+        for workers in (0, 2, 4):
+            loader = DataLoader(stream_of_keys, batch_size=None, num_workers=workers)
+            self.assertEqual(sorted(loader), [sample.key for sample in self.written])
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    package.main()
