@@ -33,7 +33,8 @@ class Scenarios(NightRun):
         self.assertEqual(yaml.safe_load(text), json.loads(dmise.Simulation(mapping).yaml))
         self.assertEqual(dmise.Simulation(text).digest, dmise.Simulation(mapping).digest)
         self.assertEqual(dmise.Simulation(self.path).yaml, NIGHT)
-        for value in (1e-7, 1.5e20, "", "a: b", "#", "- x", "ü", "no", "1", None, True, [], {}, [[1, {"a": []}], []], "a\nb", "'"):
+        for value in (1e-7, 1.5e20, "", "a: b", "#", "- x", "ü", "no", "No", "ON", "1", None, True, [], {}, [[1, {"a": []}], []],
+                      "a\nb", "'"):
             self.assertEqual(yaml.safe_load(dmise.to_yaml({"k": value, "l": [{"m": value}]})), {"k": value, "l": [{"m": value}]})
         for wrong, error in (("text\n", TypeError), ({"a": float("nan")}, dmise.ScenarioError), ({"a": {1}}, dmise.ScenarioError)):
             with self.assertRaises(error):
@@ -51,7 +52,8 @@ class Scenarios(NightRun):
         for scenario, reason in ((NIGHT.replace("exposure_s", "exposur_s"), "did you mean exposure_s"), ("{\n", "scenario:"),
                                  ({}, "simulation"), ({"simulation": {"start": float("inf")}}, "simulation.start: must be finite"),
                                  ({"simulation": {"start": object()}}, "got object"), ("/nonexistent/night.yaml", "nonexistent"),
-                                 (NIGHT.replace("GOES 13", "GOES 99"), "GOES 99"), ("\n" * 10, "mapping")):
+                                 (NIGHT.replace("GOES 13", "GOES 99"), "GOES 99"), ("\n" * 10, "mapping"),
+                                 (NIGHT + "#\ud800\n", "UTF-8"), ("a\0.yaml", "NUL")):
             with self.assertRaisesRegex(dmise.ScenarioError, reason):
                 next(dmise.Simulation(scenario).frames("west"))
         for argument in (5, None, [1]):

@@ -24,11 +24,10 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from .records import ArrayLike
+from .scenario_text import Scenario
 
 if TYPE_CHECKING:
     from .frame_stream import FrameStream as FrameStream
-
-Scenario = str | os.PathLike[str] | Mapping[str, Any]
 
 
 def mask_of(segmentation: dict[str, Any]) -> ArrayLike:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,15 +16,15 @@ import numpy.typing as npt
 
 from .engine import core, streams
 from .errors import EngineError, InputError
-from .plain_fits import fits_of
-from .scenario_text import seed_of, text_of
+from .scenario_text import Scenario, seed_of, source_of
 from .simulation import SimulatedFrame
+from .solution import file_of_frame
 from .tables import Table
 
 Array = npt.NDArray[Any]
 GRID = 9           # places along each axis where geometries are compared
 CLOSE_PX = 1e-3    # between geometries, of what a camera's attitude and focal length can do
-MOST_ROUNDS = 6
+MAX_ROUNDS = 6
 LABELS = [("catalogue_number", np.int64), ("start_x_px", float), ("start_y_px", float), ("end_x_px", float),
           ("end_y_px", float), ("x_px", float), ("y_px", float), ("signal_e", float), ("magnitude", float), ("snr", float),
           ("label", np.int64)]
@@ -50,7 +49,7 @@ class Injected:
     facts: dict[str, Any]
 
 
-def inject(image: Any, header: Any, scenario: str | os.PathLike[str] | Mapping[str, Any], *, seed: int = 1,
+def inject(image: Any, header: Any, scenario: Scenario, *, seed: int = 1,
            sensor: str = "", zero_point_mag: float | None = None, gain_e_per_dn: float | None = None,
            psf_fwhm_px: float | None = None, saturation_dn: float | None = None, tracking: str | None = None,
            catalogue: str | os.PathLike[str] = "kstars", blind: bool = False, threads: int = 1) -> Injected:
@@ -69,9 +68,8 @@ def inject(image: Any, header: Any, scenario: str | os.PathLike[str] | Mapping[s
     Raises `InputError` for what neither the frame nor an argument tells.
     """
     seed = seed_of(seed) or 0
-    content = image.to_fits() if isinstance(image, SimulatedFrame) and header is None else fits_of(image, header)
     pixels = np.asarray(image.counts if isinstance(image, SimulatedFrame) else image)
-    found = core.calibrate(content, "image", os.fspath(catalogue), blind, threads)
+    found = core.calibrate(file_of_frame(image, header), "image", os.fspath(catalogue), blind, threads)
     camera = _Camera(found, pixels, {"zero_point_mag": zero_point_mag, "gain_e_per_dn": gain_e_per_dn,
                                      "psf_fwhm_px": psf_fwhm_px, "saturation_dn": saturation_dn}, tracking)
     made, worst_px = camera.simulate(_drawn(scenario, seed), sensor, threads)
@@ -83,11 +81,9 @@ def inject(image: Any, header: Any, scenario: str | os.PathLike[str] | Mapping[s
                     camera.facts | {"geometry_px": worst_px})
 
 
-def _drawn(scenario: str | os.PathLike[str] | Mapping[str, Any], seed: int) -> Any:
-    text = text_of(scenario)
-    if text is not None or isinstance(scenario, Mapping):
-        return core.Simulation.drawn_of_text(text, "scenario", seed)
-    return core.Simulation.drawn_of_file(os.fspath(scenario), seed)
+def _drawn(scenario: Scenario, seed: int) -> Any:
+    text, name = source_of(scenario)
+    return core.Simulation.drawn_of_file(name, seed) if text is None else core.Simulation.drawn_of_text(text, name, seed)
 
 
 class _Camera:
@@ -126,7 +122,7 @@ class _Camera:
         like = self._first_guess()
         like.sensor = sensor
         wanted = np.stack([x, self.rows - 1 - y if self.mirrored else y], axis=1)
-        for _ in range(MOST_ROUNDS):
+        for _ in range(MAX_ROUNDS):
             made = _only_frame(simulation.like(like), threads)
             away = np.asarray(made.wcs.pixels(sky.tolist())) - wanted
             if not np.isfinite(away).all():

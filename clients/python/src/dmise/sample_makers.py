@@ -4,39 +4,36 @@ from __future__ import annotations
 import functools
 import operator
 import os
-from collections.abc import Mapping
 from typing import Any
 
 from .engine import core
 from .errors import ScenarioError
-from .scenario_text import text_of
+from .scenario_text import Scenario, source_of
+MAX_SEED = 999_999_999  # that keys of samples have room for
 
-MOST_SEED = 999_999_999  # that keys of samples have room for
 
-
-def samples_of(scenario: str | os.PathLike[str] | Mapping[str, Any], seed: Any) -> Any:
+def samples_of(scenario: Scenario, seed: Any) -> Any:
     """Of each frame its key, image, mask and JSON of labels."""
     number = operator.index(seed)
-    if not 0 <= number <= MOST_SEED:
-        raise ScenarioError(f"seed: must be in 0..{MOST_SEED}, got {number}")
+    if not 0 <= number <= MAX_SEED:
+        raise ScenarioError(f"seed: must be in 0..{MAX_SEED}, got {number}")
     return _maker_of(scenario).make(number)
 
 
-def _maker_of(scenario: str | os.PathLike[str] | Mapping[str, Any]) -> Any:
-    text = text_of(scenario)
-    if text is not None or isinstance(scenario, Mapping):
-        return _maker_of_text(text)
-    path = os.fspath(scenario)
+def _maker_of(scenario: Scenario) -> Any:
+    text, name = source_of(scenario)
+    if text is not None:
+        return _maker_of_text(text, name)
     try:
-        facts = os.stat(path)
+        facts = os.stat(name)
     except OSError:
-        return core.Samples.of_file(path)  # which says why there is none
-    return _maker_of_file(os.path.abspath(path), facts.st_mtime_ns, facts.st_size)
+        return core.Samples.of_file(name)  # which says why there is none
+    return _maker_of_file(os.path.abspath(name), facts.st_mtime_ns, facts.st_size)
 
 
 @functools.lru_cache(maxsize=4)
-def _maker_of_text(text: str | None) -> Any:
-    return core.Samples.of_text(text, "scenario")
+def _maker_of_text(text: str, name: str) -> Any:
+    return core.Samples.of_text(text, name)
 
 
 @functools.lru_cache(maxsize=4)

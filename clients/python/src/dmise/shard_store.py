@@ -9,8 +9,9 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .commands import Scenario, _file_of, _run
+from .commands import file_of, run_command
 from .errors import EngineError, ScenarioError
+from .scenario_text import Scenario
 
 _MANIFEST, _PLAN = "dataset.json", "parts/plan.json"
 # In the order in which they are sent: a part's .json tells that its archive is there, the manifest that all is.
@@ -124,7 +125,7 @@ def write(scenario: Scenario, seeds: range, url: str, per_shard: int, shard: str
     if per_shard < 1:
         raise ValueError(f"per_shard: must be from 1, got {per_shard}")
     task, tasks = _task(shard)
-    with tempfile.TemporaryDirectory(prefix="dmise-shards-") as directory, _file_of(scenario) as path:
+    with tempfile.TemporaryDirectory(prefix="dmise-shards-") as directory, file_of(scenario) as path:
         mirror = _Mirror(pathlib.Path(directory), url, options)
         mirror.fetch()
         there = mirror.seeds() or seeds
@@ -132,8 +133,8 @@ def write(scenario: Scenario, seeds: range, url: str, per_shard: int, shard: str
 
         def run(part: str, **more: Any) -> None:
             try:
-                _run("dataset", [path], {"seeds": f"{seeds.start}..{seeds.stop - 1}", "per_shard": per_shard, "out": directory,
-                                         "shard": part, "workers": workers, **more})
+                run_command("dataset", [path], {"seeds": f"{seeds.start}..{seeds.stop - 1}", "per_shard": per_shard,
+                                                "out": directory, "shard": part, "workers": workers, **more})
             except (ScenarioError, EngineError) as error:
                 raise type(error)(str(error).replace(directory, url).partition("; --force")[0]) from None
 
