@@ -9,14 +9,12 @@ from typing import Any
 from .engine import core
 from .errors import ScenarioError
 from .scenario_text import Scenario, source_of
-MAX_SEED = 999_999_999  # that keys of samples have room for
-
 
 def samples_of(scenario: Scenario, seed: Any) -> Any:
     """Of each frame its key, image, mask and JSON of labels."""
     number = operator.index(seed)
-    if not 0 <= number <= MAX_SEED:
-        raise ScenarioError(f"seed: must be in 0..{MAX_SEED}, got {number}")
+    if not 0 <= number <= core.max_sample_seed:
+        raise ScenarioError(f"seed: must be in 0..{core.max_sample_seed}, got {number}")
     return _maker_of(scenario).make(number)
 
 
