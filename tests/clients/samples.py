@@ -4,11 +4,13 @@
 """
 import functools
 import multiprocessing
+import os
 import pathlib
 import pickle
 import subprocess
 import sys
 import tempfile
+import threading
 import types
 import unittest
 
@@ -65,6 +67,30 @@ class Samples(unittest.TestCase):
                 made = [sample for each in pool.imap(functools.partial(map_seed, self.path), SEEDS) for sample in each]
             self.assertEqual(list(map(as_bytes, made)), list(map(as_bytes, self.written)), method)
 
+    def test_a_process_that_is_forked_while_a_sample_is_made(self):
+        """It makes its own: the thread that makes the other is not in it."""
+        ended = threading.Event()
+
+        def make():
+            while not ended.is_set():
+                map_seed(self.path, 5)
+
+        thread = threading.Thread(target=make)
+        thread.start()
+        try:
+            context = multiprocessing.get_context("fork")
+            for _ in range(5):
+                process = context.Process(target=map_seed, args=(self.path, 6))
+                process.start()
+                process.join(60.0)
+                code = process.exitcode
+                process.kill()
+                process.join()
+                self.assertEqual(code, 0)
+        finally:
+            ended.set()
+            thread.join()
+
     def test_scenarios_may_be_text(self):
         """The digest is of the text; images are the same."""
         ours, theirs = map_seed(SCENARIO, 7), map_seed(self.path, 7)
@@ -92,10 +118,14 @@ class Samples(unittest.TestCase):
             self.assertEqual(bool(sample.mask.any()), bool(names))
 
     def test_a_scenario_that_changes_is_read_again(self):
+        """Also one that keeps its size and time."""
         path = self.path.with_name("changing.yaml")
         path.write_text(SCENARIO)
         before = map_seed(path, 5)[0]
-        path.write_text(SCENARIO.replace("full_well_e: 60000", "full_well_e: 61000.0"))
+        facts = path.stat()
+        path.write_text(SCENARIO.replace("full_well_e: 60000", "full_well_e: 61000"))
+        os.utime(path, ns=(facts.st_atime_ns, facts.st_mtime_ns))
+        self.assertEqual(path.stat().st_size, facts.st_size)
         self.assertNotEqual(map_seed(path, 5)[0].labels["digest"], before.labels["digest"])
 
     def test_workers_share_the_seeds(self):

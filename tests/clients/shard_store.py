@@ -3,6 +3,7 @@
     shard_store.py DMISE
 """
 import logging
+import multiprocessing
 import pathlib
 import pickle
 import subprocess
@@ -77,6 +78,15 @@ class ShardStore(unittest.TestCase):
             self.assertEqual((ours.key, ours.labels), (theirs.key, theirs.labels))
             np.testing.assert_array_equal(ours.image, theirs.image)
             np.testing.assert_array_equal(ours.mask, theirs.mask)
+
+    def test_a_forked_process_reads(self):
+        """As the workers of a DataLoader, after the process that they come from has read."""
+        self.assertTrue(self.write("forked", range(5, 7)))
+        found = open_dataset("s3://images/forked", self.options)
+        process = multiprocessing.get_context("fork").Process(target=expect, args=(found, found[0].key))
+        process.start()
+        process.join(60.0)
+        self.assertEqual(process.exitcode, 0)
 
     def test_tasks_share_archives_and_continue(self):
         """The second of two tasks, then the first, which found an archive whose record was not yet written."""

@@ -71,14 +71,10 @@ class Dataset:
     """The frames of a data set, by number; may be passed to other processes."""
 
     def __init__(self, directory: str | pathlib.Path, storage_options: Mapping[str, Any] | None = None) -> None:
-        self._files: Any = None
-        self.directory = pathlib.PurePath(directory)
-        if "://" in str(directory):
-            from .shard_store import file_system
-
-            self._files, root = file_system(str(directory), storage_options)
-            self.directory = pathlib.PurePosixPath(root)
-        path = f"{os.fspath(directory).rstrip('/')}/dataset.json"
+        self.directory = directory if "://" in str(directory) else pathlib.Path(directory)
+        self._url = os.fspath(directory).rstrip("/")
+        self._options = storage_options
+        path = self._path("dataset.json")
         try:
             with self._open("dataset.json") as file:
                 self.info: dict[str, Any] = json.loads(file.read())
@@ -119,12 +115,19 @@ class Dataset:
                 while piece := file.read(1 << 20):
                     sha.update(piece)
             if sha.hexdigest() != entry["sha256"]:
-                raise ValueError(f"{self.directory / entry['name']}: its SHA-256 is not that of dataset.json")
+                raise ValueError(f"{self._path(entry['name'])}: its SHA-256 is not that of dataset.json")
+
+    def _path(self, name: str) -> str:
+        return str(self.directory / name) if isinstance(self.directory, pathlib.Path) else f"{self._url}/{name}"
 
     def _open(self, name: str) -> Any:
         """A file of the data set, of bytes."""
-        path = str(self.directory / name)
-        return open(path, "rb") if self._files is None else self._files.open(path, "rb")
+        if isinstance(self.directory, pathlib.Path):
+            return open(self.directory / name, "rb")
+        from .shard_store import file_system
+
+        files, root = file_system(self._url, self._options)  # one for each process, of fsspec's own cache
+        return files.open(f"{root}/{name}", "rb")
 
     def _name(self, shard: int) -> str:
         return str(self.info["shards"][shard]["name"])

@@ -10,6 +10,7 @@ from .engine import core
 from .errors import ScenarioError
 from .scenario_text import Scenario, source_of
 
+
 def samples_of(scenario: Scenario, seed: Any) -> Any:
     """Of each frame its key, image, mask and JSON of labels."""
     number = operator.index(seed)
@@ -20,20 +21,22 @@ def samples_of(scenario: Scenario, seed: Any) -> Any:
 
 def _maker_of(scenario: Scenario) -> Any:
     text, name = source_of(scenario)
+    # A maker serves one process: in a forked one a thread that is not there may hold its lock.
     if text is not None:
-        return _maker_of_text(text, name)
+        return _maker_of_text(text, name, os.getpid())
     try:
         facts = os.stat(name)
     except OSError:
         return core.Samples.of_file(name)  # which says why there is none
-    return _maker_of_file(os.path.abspath(name), facts.st_mtime_ns, facts.st_size)
+    version = facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtime_ns, facts.st_ctime_ns
+    return _maker_of_file(os.path.abspath(name), version, os.getpid())
 
 
 @functools.lru_cache(maxsize=4)
-def _maker_of_text(text: str, name: str) -> Any:
+def _maker_of_text(text: str, name: str, _process: int) -> Any:
     return core.Samples.of_text(text, name)
 
 
 @functools.lru_cache(maxsize=4)
-def _maker_of_file(path: str, _modified_ns: int, _size: int) -> Any:
+def _maker_of_file(path: str, _version: tuple[int, ...], _process: int) -> Any:
     return core.Samples.of_file(path)
