@@ -3,10 +3,12 @@
     samples.py DMISE
 """
 import functools
+import json
 import multiprocessing
 import os
 import pathlib
 import pickle
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -44,8 +46,9 @@ class Samples(unittest.TestCase):
         base = pathlib.Path(cls.directory.name)
         cls.path = base / "dataset.yaml"
         cls.path.write_text(SCENARIO)
-        subprocess.run([DMISE, "dataset", cls.path, "--seeds", "5..10", "--out", base / "out"], check=True, capture_output=True)
-        cls.written = list(open_dataset(base / "out"))
+        cls.out = base / "out"
+        subprocess.run([DMISE, "dataset", cls.path, "--seeds", "5..10", "--out", cls.out], check=True, capture_output=True)
+        cls.written = list(open_dataset(cls.out))
 
     @classmethod
     def tearDownClass(cls):
@@ -164,6 +167,25 @@ class Samples(unittest.TestCase):
         for worker, workers in ((2, 2), (-1, 2), (0, 0)):
             with self.assertRaisesRegex(ValueError, "worker"):
                 FrameStream(self.path, SEEDS, worker=worker, workers=workers)
+
+    def test_damaged_data_sets(self):
+        """By a manifest that is none, and archives that are not as it says."""
+        with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+            copy = shutil.copytree(self.out, pathlib.Path(directory) / "copy")
+            manifest, archive = copy / "dataset.json", copy / "dataset-000000.tar"
+            info, content = json.loads(manifest.read_text()), archive.read_bytes()
+
+            def expect_refused(shard, reason):
+                manifest.write_text(json.dumps(info | {"shards": [info["shards"][0] | shard]}))
+                with self.assertRaisesRegex(ValueError, reason):
+                    open_dataset(copy)[0]
+
+            for shard in ({"frames": "24"}, {"frames": -1}, {"frames": 1e30}, {"name": "../dataset-000000.tar"}, {"name": 5}):
+                expect_refused(shard, "dataset.json: not the manifest of a data set: no archive: ")
+            expect_refused({"frames": 25}, "dataset-000000.tar: does not have the frames of dataset.json")
+            for damaged in (content[:900], bytes(len(content)), b"", b"x" * 10240):
+                archive.write_bytes(damaged)
+                expect_refused({}, "dataset-000000.tar: (does not have|not an archive)")
 
     def test_pytorch_reads_a_stream(self):
         try:

@@ -17,6 +17,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import tarfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -28,6 +29,8 @@ from .scenario_text import Scenario
 
 if TYPE_CHECKING:
     from .frame_stream import FrameStream as FrameStream
+
+_MEMBERS = {"image.npy", "mask.npy", "labels.json"}  # of each frame; docs/datasets.md has what else there may be
 
 
 def mask_of(segmentation: dict[str, Any]) -> ArrayLike:
@@ -67,6 +70,14 @@ class Sample:
         return [mask_of(found["segmentation"]) for found in self.objects]
 
 
+def _frames_of(shard: Any) -> int:
+    """How many frames an archive has, by the manifest. Raises ValueError for an entry that is none of `dmise dataset`."""
+    name, frames = shard["name"], shard["frames"]
+    if not (isinstance(name, str) and re.fullmatch(r"dataset-\d{6,}\.tar", name) and type(frames) is int and frames >= 0):
+        raise ValueError(f"no archive: {str(shard)[:80]}")
+    return frames
+
+
 class Dataset:
     """The frames of a data set, by number; may be passed to other processes."""
 
@@ -78,7 +89,7 @@ class Dataset:
         try:
             with self._open("dataset.json") as file:
                 self.info: dict[str, Any] = json.loads(file.read())
-            self._ends = list(itertools.accumulate(shard["frames"] for shard in self.info["shards"]))
+            self._ends = list(itertools.accumulate(map(_frames_of, self.info["shards"])))
         except OSError as error:
             raise FileNotFoundError(f"{path}: {error.strerror or 'cannot be read'}; is this the directory of a complete data set?") from None
         except (ValueError, TypeError, KeyError) as error:
@@ -135,18 +146,24 @@ class Dataset:
     def _members_of(self, shard: int) -> list[dict[str, tuple[int, int]]]:
         """Places in the archive of each frame's files, by ending."""
         if shard not in self._members:
+            name = self._name(shard)
             frames: dict[str, dict[str, tuple[int, int]]] = {}
-            with self._open(self._name(shard)) as file, tarfile.open(fileobj=file, mode="r:") as archive:
-                for member in archive:
-                    key, _, ending = member.name.partition(".")
-                    frames.setdefault(key, {})[ending] = (member.offset_data, member.size)
+            try:
+                with self._open(name) as file, tarfile.open(fileobj=file, mode="r:") as archive:
+                    for member in archive:
+                        key, _, ending = member.name.partition(".")
+                        frames.setdefault(key, {})[ending] = (member.offset_data, member.size)
+            except tarfile.TarError as error:
+                raise ValueError(f"{self._path(name)}: not an archive of a data set: {error}") from None
+            if len(frames) != self.info["shards"][shard]["frames"] or not all(_MEMBERS <= frame.keys() for frame in frames.values()):
+                raise ValueError(f"{self._path(name)}: does not have the frames of dataset.json")
             self._members[shard] = list(frames.values())
         return self._members[shard]
 
 
 def open_dataset(directory: str | pathlib.Path, storage_options: Mapping[str, Any] | None = None) -> Dataset:
     """The data set in a directory, or at a URL of fsspec: "s3://bucket/prefix". `storage_options` are those of its file
-    system. Raises FileNotFoundError for one that is not complete."""
+    system. Raises FileNotFoundError for one that is not complete, ValueError, also when a frame is read, for a damaged one."""
     return Dataset(directory, storage_options)
 
 
