@@ -88,6 +88,21 @@ class ShardStore(unittest.TestCase):
         process.join(60.0)
         self.assertEqual(process.exitcode, 0)
 
+    def test_what_another_task_has_removed_meanwhile(self):
+        """A listing that has a part which is no longer there is read again."""
+        self.assertTrue(self.write("ended", range(5, 7)))
+        files, root = file_system("s3://images/ended", self.options)
+        find, listings = files.find, []
+
+        def find_once_more(path, **options):
+            found = find(path, **options)
+            listings.append(found)
+            return found if len(listings) > 1 else found | {f"{root}/parts/dataset-000000.json": {"size": 1}}
+
+        with unittest.mock.patch.object(files, "find", find_once_more):
+            self.assertTrue(self.write("ended", range(5, 7)))
+        self.assertEqual(len(listings), 2)
+
     def test_tasks_share_archives_and_continue(self):
         """The second of two tasks, then the first, which found an archive whose record was not yet written."""
         self.assertFalse(self.write("shared", shard="2/2"))

@@ -19,6 +19,7 @@ _SENT = tuple(re.compile(pattern) for pattern in (
     r"parts/plan\.json", r"dataset-\d{6,}\.tar", r"parts/dataset-\d{6,}\.coco", r"parts/dataset-\d{6,}\.json", r"scenario\.yaml",
     r"coco\.json", r"dataset\.json"))
 _Version = tuple[int, int, int]
+MAX_ROUNDS = 5  # of reading a store that other tasks change
 
 
 def file_system(url: str, options: Mapping[str, Any] | None) -> tuple[Any, str]:
@@ -42,6 +43,14 @@ class _Mirror:
 
     def fetch(self) -> None:
         """Brings what is in the store and not here, or not in this size."""
+        for _ in range(MAX_ROUNDS):
+            try:
+                return self._fetch_listed()
+            except FileNotFoundError:
+                pass  # another task has removed parts, for all is done
+        raise EngineError(f"{self.url}: its files change while they are read")
+
+    def _fetch_listed(self) -> None:
         self.files.invalidate_cache()
         for path, facts in sorted(self.files.find(self.root, detail=True).items()):
             name = path[len(self.root) + 1:]
@@ -122,6 +131,8 @@ def write(scenario: Scenario, seeds: range, url: str, per_shard: int, shard: str
     """As `dmise.datasets.write_shards` says."""
     if not isinstance(seeds, range) or seeds.step != 1 or not seeds:
         raise ValueError(f"seeds: must be a range of one or more in steps of 1, got {seeds}")
+    if not os.fspath(url):
+        raise ValueError("url: is empty")
     if per_shard < 1:
         raise ValueError(f"per_shard: must be from 1, got {per_shard}")
     task, tasks = _task(shard)
