@@ -85,6 +85,26 @@ class Injections(unittest.TestCase):
         made = dmise.inject(image, self.cards, WITH, **STATED)
         np.testing.assert_array_equal(np.isnan(made.image), np.isnan(image))
 
+    def test_masked_pixels_stay(self):
+        """Those where the light would be."""
+        lit = dmise.inject(self.empty.counts, self.cards, WITH, **STATED).light > 0.0
+        image = np.ma.masked_array(self.empty.counts.copy(), lit)
+        made = dmise.inject(image, self.cards, WITH, **STATED)
+        np.testing.assert_array_equal(made.image.mask, lit)
+        np.testing.assert_array_equal(made.image.data, image.data)
+
+    def test_numbers_that_their_type_does_not_hold(self):
+        image = self.empty.counts.astype("f2")
+        made = dmise.inject(image, self.cards, WITH, **(STATED | {"gain_e_per_dn": 1e-10}))
+        self.assertEqual(made.image[made.mask > 0].max(), np.finfo("f2").max)
+
+    def test_large_numbers_stay_large(self):
+        """The largest of 64 bits are those that a float does not hold."""
+        image = self.empty.counts.astype("i8")
+        image[self.rendered.mask > 0] = np.iinfo("i8").max
+        made = dmise.inject(image, self.cards, night(200), **STATED)
+        self.assertGreater(made.image[self.rendered.mask > 0].min(), 2**62)
+
     def test_mirrored_frames(self):
         """Rows from the bottom up: the same light in the other order."""
         cards = dict(self.cards)
@@ -135,6 +155,9 @@ class Injections(unittest.TestCase):
                 (cards, WITH, {"zero_point_mag": None}, "zero_point_mag: is not known"),
                 (cards, WITH, {"psf_fwhm_px": -1.0}, "psf_fwhm_px: must be a number > 0, got -1.0"),
                 (cards, WITH, {"zero_point_mag": float("nan")}, "zero_point_mag: must be a number, got nan"),
+                (cards, WITH, {"zero_point_mag": 1e300}, "zero_point_mag: must be in -100..100"),
+                (cards, WITH, {"zero_point_mag": 90.0}, "zero_point_mag: gives a pixel more than 1e[+]15 electrons"),
+                (cards, WITH, {"gain_e_per_dn": 1e300}, "gain_e_per_dn: must be in 1e-30..1e30"),
                 (cards, WITH, {"tracking": "comet"}, 'must be "sidereal" or "fixed"'),
                 (cards, WITH, {"sensor": "est"}, "no sensor is named est"),
                 (cards, WITH.replace("radius_m: 2", "radius_m: -2"), {}, "radius_m: must be > 0"),
@@ -142,6 +165,8 @@ class Injections(unittest.TestCase):
             with self.assertRaisesRegex(dmise.InputError, reason) as caught:
                 dmise.inject(image, header, scenario, **(STATED | stated))
             self.assertNotIn("\n", str(caught.exception))
+        with self.assertRaisesRegex(dmise.InputError, "two rows and two columns or more"):
+            dmise.inject(image[:1, :1], cards, WITH, **STATED)
 
 
 if __name__ == "__main__":
