@@ -53,17 +53,17 @@ DatasetTask task_of(const DatasetOptions& options) {
 }
 
 DatasetPlan plan_of(const DatasetOptions& options, const std::string& scenario_text) {
-  constexpr std::uint32_t most_seed = 999'999'999, most_shards = 1'000'000;
+  constexpr std::uint32_t max_shards = 1'000'000;
   const auto seeds = two_numbers(options.seeds, "..");
-  if (!seeds || seeds->first > seeds->second || seeds->second > most_seed)
-    throw ConfigError("--seeds: must be A..B with 0 <= A <= B <= 999999999, got " +
-                      printable(options.seeds));
+  if (!seeds || seeds->first > seeds->second || seeds->second > max_sample_seed)
+    throw ConfigError("--seeds: must be A..B with 0 <= A <= B <= " +
+                      std::to_string(max_sample_seed) + ", got " + printable(options.seeds));
   DatasetPlan plan{.first_seed = seeds->first,
                    .last_seed = seeds->second,
                    .seeds_per_shard = options.seeds_per_shard,
                    .scenario_text = scenario_text,
                    .digest = {}};
-  if (plan.shards() > most_shards)
+  if (plan.shards() > max_shards)
     throw ConfigError("--per-shard: gives more than 1000000 archives, got " +
                       std::to_string(options.seeds_per_shard));
   return plan;

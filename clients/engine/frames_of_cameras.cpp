@@ -156,12 +156,8 @@ nb::object pixels_of(const Wcs& wcs, const std::vector<std::array<double, 3>>& d
 void add_calibrated(nb::module_& module) {
   nb::class_<Wcs>(module, "Wcs").def("directions", &directions_of).def("pixels", &pixels_of);
   nb::class_<Calibrated>(module, "Calibrated")
-      .def("counts",
-           [](nb::handle_t<Calibrated> self) {
-             const CountImage& counts = nb::cast<const Calibrated&>(self).frame.counts;
-             return array_in(counts.pixels.data(),
-                             {std::size_t(counts.rows), std::size_t(counts.columns)}, self);
-           })
+      .def_prop_ro("count_zero", [](const Calibrated& c) { return c.frame.count_zero; })
+      .def_prop_ro("count_step", [](const Calibrated& c) { return c.frame.count_step; })
       .def_prop_ro("wcs", [](const Calibrated& c) { return c.header.wcs; })
       .def_prop_ro("start_utc", [](const Calibrated& c) { return c.header.start_utc; })
       .def_prop_ro("exposure_s", [](const Calibrated& c) { return c.header.exposure_s; })

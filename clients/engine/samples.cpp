@@ -90,6 +90,7 @@ Samples samples_from(const Source&... source) {
 }  // namespace
 
 void add_samples(nb::module_& module) {
+  module.attr("max_sample_seed") = max_sample_seed;
   nb::class_<Samples>(module, "Samples")
       .def_static("of_file", &samples_from<std::string>)
       .def_static("of_text", &samples_from<std::string, std::string>)

@@ -14,8 +14,9 @@ namespace dmise {
 struct Frame {
   CountImage counts;
   FrameHeader header;
-  PixelMask unusable{};  // pixels without a value
-  FrameNotes notes{};    // of another camera's frame (core/ingest)
+  PixelMask unusable{};                       // pixels without a value
+  FrameNotes notes{};                         // of another camera's frame (core/ingest)
+  double count_zero = 0.0, count_step = 1.0;  // a count is (value in the file - zero) / step
 };
 
 /// Storage of pixels: uncompressed, or losslessly Rice-compressed.

@@ -130,6 +130,8 @@ Frame foreign_frame(FitsImage& image, const FitsValues& values, const StandardCa
   leave_out_bright_edges(cards, image.columns(), image.rows(), used);
   const CountMap map = choose_count_map(used, image.columns());
   frame.counts = to_counts(used, image.columns(), map, frame.unusable);
+  frame.count_zero = map.zero;
+  frame.count_step = map.step;
   set_facts(cards, place, image.columns(), image.rows(), frame.header);
   set_detector(cards, {pixels, map, together, mosaic.get()}, frame.counts, threads, frame.header);
   leave_out_bleeding(frame, threads);

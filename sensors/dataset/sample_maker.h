@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +12,8 @@
 #include "sensors/dataset/frame_labels.h"
 
 namespace dmise {
+
+inline constexpr std::uint64_t max_sample_seed = 999'999'999;  // keys have nine digits for it
 
 /// One frame of a sample, as it goes into an archive.
 struct SampleFrame {

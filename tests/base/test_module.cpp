@@ -33,7 +33,7 @@ TEST(Module, AnotherLibraryIsNoModule) {
   EXPECT_EQ(complaint("libz.so.1", "dmise_make_test"), "libz.so.1: is not a test module");
 }
 
-// In a module of Python it is the module: tests/clients/engine.py.
+// In a module of Python it is the module: tests/clients/engine_frames.py.
 TEST(OwnFile, OfAProgramIsTheProgram) {
   EXPECT_EQ(own_file(), std::filesystem::canonical("/proc/self/exe"));
 }

@@ -2,7 +2,6 @@
 
     cluster_samples.py DMISE dask|ray|slurm
 """
-import importlib
 import json
 import os
 import pathlib
@@ -11,22 +10,21 @@ import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-EXAMPLES = ROOT / "clients/python/examples"
-sys.path[:0] = [str(ROOT / "build/python"), str(EXAMPLES)]
-os.environ["PYTHONPATH"] = str(ROOT / "build/python")  # of workers
-DMISE, KIND = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+import package
+from package import DMISE, PACKAGE, ROOT
 
-try:
-    import numpy as np
-    import dmise.engine
-    importlib.import_module({"dask": "distributed", "ray": "ray.data", "slurm": "dmise.datasets"}[KIND])
-except ImportError as missing:
-    how = "python -m pip install 'ray[data]'" if KIND == "ray" else "./dmise setup --tests"
-    print(f"skipped: {missing.name or missing} is not installed ({how})")
-    sys.exit(77)
+KIND = sys.argv[2]
+MODULE, HOW = {"dask": ("distributed", "./dmise setup --tests"), "ray": ("ray.data", "python -m pip install 'ray[data]'"),
+               "slurm": ("dmise.datasets", "")}[KIND]
+package.require("numpy", "dmise.engine")
+package.require(MODULE, how=HOW)
+import numpy as np  # noqa: E402
+
 from dmise.datasets import open_dataset  # noqa: E402
 
+EXAMPLES = ROOT / "clients/python/examples"
+sys.path.insert(0, str(EXAMPLES))
+os.environ["PYTHONPATH"] = PACKAGE  # of workers
 SEEDS = range(1, 7)
 
 

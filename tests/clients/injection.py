@@ -1,45 +1,28 @@
 """Objects in frames that are given: type, saturation, pixels without a value, mirrored frames, and bad input.
 
-    injection.py
+    injection.py [DMISE [TEST..]]
 """
 import io
-import pathlib
-import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "build/python"))
+import package
 
-try:
-    import astropy.io.fits
-    import numpy as np
-except ImportError as missing:
-    print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
-    sys.exit(77)
+package.require("astropy", "numpy", "dmise.engine")
+import astropy.io.fits  # noqa: E402
+import numpy as np  # noqa: E402
+
 import dmise  # noqa: E402
+from scenarios import sensor  # noqa: E402
 
-try:
-    import dmise.engine
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 
-SCENARIO = """\
-simulation: {{start: 2018-01-21T03:00:00Z, duration_s: 10, tick_s: 5, seed: 7}}
-objects: [{{catalogue: demo, only: [GOES 13], radius_m: {radius_m}}}]
-stars: {{catalogue: kstars}}
-sensors:
-  - name: west
-    site: {{latitude_deg: 33, longitude_deg: -100, height_m: 300}}
-    camera:
-      optics: {{columns: 96, rows: 64, pixel_pitch_m: 9e-6, focal_length_m: 0.2, aperture_m: 0.1, psf_fwhm_px: 2}}
-      detector: {{quantum_efficiency: 0.6, read_noise_e: 5, full_well_e: 60000, gain_e_per_dn: 2, bias_dn: 100}}
-      band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
-    pointing: {{target: GOES 13, tracking: sidereal, roll_deg: 20, offset_deg: [0.02, -0.03]}}
-    exposure_s: 5
-    cadence_s: 10
-"""
-WITH, WITHOUT = SCENARIO.format(radius_m=2), SCENARIO.format(radius_m=1e-4)
+def night(radius_m):
+    return ("simulation: {start: 2018-01-21T03:00:00Z, duration_s: 10, tick_s: 5, seed: 7}\n"
+            f"objects: [{{catalogue: demo, only: [GOES 13], radius_m: {radius_m}}}]\nstars: {{catalogue: kstars}}\nsensors:\n" +
+            sensor("west", "{target: GOES 13, tracking: sidereal, roll_deg: 20, offset_deg: [0.02, -0.03]}", columns=96, rows=64,
+                   gain_e_per_dn=2, exposure_s=5))
+
+
+WITH, WITHOUT = night(2), night(1e-4)
 STATED = {"zero_point_mag": 20.0, "gain_e_per_dn": 2.0, "psf_fwhm_px": 2.0, "tracking": "sidereal", "catalogue": "none"}
 
 
@@ -91,9 +74,9 @@ class Injections(unittest.TestCase):
     def test_pixels_saturate(self):
         image = self.empty.counts.copy()
         image[0, 0] = 5000
-        made = dmise.inject(image, self.cards, SCENARIO.format(radius_m=200), saturation_dn=1000.0, **STATED)
+        made = dmise.inject(image, self.cards, night(200), saturation_dn=1000.0, **STATED)
         self.assertEqual((made.image[made.mask > 0].max(), made.image[0, 0]), (1000, 5000))
-        bright = dmise.inject(image.astype("u1"), self.cards, SCENARIO.format(radius_m=200), **STATED)
+        bright = dmise.inject(image.astype("u1"), self.cards, night(200), **STATED)
         self.assertEqual(bright.image.max(), 255)
 
     def test_pixels_without_a_value_stay(self):
@@ -101,6 +84,26 @@ class Injections(unittest.TestCase):
         image[20:40, 40:50] = np.nan
         made = dmise.inject(image, self.cards, WITH, **STATED)
         np.testing.assert_array_equal(np.isnan(made.image), np.isnan(image))
+
+    def test_masked_pixels_stay(self):
+        """Those where the light would be."""
+        lit = dmise.inject(self.empty.counts, self.cards, WITH, **STATED).light > 0.0
+        image = np.ma.masked_array(self.empty.counts.copy(), lit)
+        made = dmise.inject(image, self.cards, WITH, **STATED)
+        np.testing.assert_array_equal(made.image.mask, lit)
+        np.testing.assert_array_equal(made.image.data, image.data)
+
+    def test_numbers_that_their_type_does_not_hold(self):
+        image = self.empty.counts.astype("f2")
+        made = dmise.inject(image, self.cards, WITH, **(STATED | {"gain_e_per_dn": 1e-10}))
+        self.assertEqual(made.image[made.mask > 0].max(), np.finfo("f2").max)
+
+    def test_large_numbers_stay_large(self):
+        """The largest of 64 bits are those that a float does not hold."""
+        image = self.empty.counts.astype("i8")
+        image[self.rendered.mask > 0] = np.iinfo("i8").max
+        made = dmise.inject(image, self.cards, night(200), **STATED)
+        self.assertGreater(made.image[self.rendered.mask > 0].min(), 2**62)
 
     def test_mirrored_frames(self):
         """Rows from the bottom up: the same light in the other order."""
@@ -152,6 +155,9 @@ class Injections(unittest.TestCase):
                 (cards, WITH, {"zero_point_mag": None}, "zero_point_mag: is not known"),
                 (cards, WITH, {"psf_fwhm_px": -1.0}, "psf_fwhm_px: must be a number > 0, got -1.0"),
                 (cards, WITH, {"zero_point_mag": float("nan")}, "zero_point_mag: must be a number, got nan"),
+                (cards, WITH, {"zero_point_mag": 1e300}, "zero_point_mag: must be in -100..100"),
+                (cards, WITH, {"zero_point_mag": 90.0}, "zero_point_mag: gives a pixel more than 1e[+]15 electrons"),
+                (cards, WITH, {"gain_e_per_dn": 1e300}, "gain_e_per_dn: must be in 1e-30..1e30"),
                 (cards, WITH, {"tracking": "comet"}, 'must be "sidereal" or "fixed"'),
                 (cards, WITH, {"sensor": "est"}, "no sensor is named est"),
                 (cards, WITH.replace("radius_m: 2", "radius_m: -2"), {}, "radius_m: must be > 0"),
@@ -159,7 +165,9 @@ class Injections(unittest.TestCase):
             with self.assertRaisesRegex(dmise.InputError, reason) as caught:
                 dmise.inject(image, header, scenario, **(STATED | stated))
             self.assertNotIn("\n", str(caught.exception))
+        with self.assertRaisesRegex(dmise.InputError, "two rows and two columns or more"):
+            dmise.inject(image[:1, :1], cards, WITH, **STATED)
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    package.main()

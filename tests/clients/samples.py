@@ -3,52 +3,36 @@
     samples.py DMISE
 """
 import functools
+import json
 import multiprocessing
+import os
 import pathlib
 import pickle
+import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import types
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "build/python"))
+import package
 
-try:
-    import numpy as np
-except ImportError as missing:
-    print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
-    sys.exit(77)
+package.require("numpy", "dmise.engine")
+import numpy as np  # noqa: E402
+
 import dmise  # noqa: E402
-
-try:
-    import dmise.engine
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
 from dmise.datasets import FrameStream, map_seed, open_dataset, stream  # noqa: E402
+from package import DMISE  # noqa: E402
+from scenarios import DRAWN_HEAD, drawn_sensor, sensor  # noqa: E402
 
-DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
-SENSOR = """\
-  - name: {name}
-    site: {{latitude_deg: {{uniform: [25, 40]}}, longitude_deg: -100, height_m: 300}}
-    camera:
-      optics: {{columns: 96, rows: 64, pixel_pitch_m: 9e-6, focal_length_m: 0.2, aperture_m: 0.1, psf_fwhm_px: 2}}
-      detector: {{read_noise_e: {{normal: {{mean: 6, sigma: 1, min: 3}}}}, full_well_e: 60000, gain_e_per_dn: 1, bias_dn: {{integers: [90, 110]}}}}
-      band: {{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}
-    pointing: {{target: {{one_of: [GOES 13, GOES 14]}}, tracking: fixed}}
-    exposure_s: {{log_uniform: [1, 8]}}
-    cadence_s: 10
-"""
-SCENARIO = """\
-simulation: {start: {uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}, duration_s: 20, tick_s: 10}
-objects: [{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]
-stars: {catalogue: kstars}
-output: {fits: off}
-sensors:
-""" + SENSOR.format(name="west") + SENSOR.format(name="east")
+COLUMNS, ROWS = 96, 64
+SCENARIO = "stars: {catalogue: kstars}\n" + DRAWN_HEAD + drawn_sensor("west", COLUMNS, ROWS) + drawn_sensor("east", COLUMNS, ROWS)
 SEEDS = range(5, 11)
+
+
+def key_of(sample):
+    return sample.key
 
 
 def as_bytes(sample):
@@ -62,8 +46,9 @@ class Samples(unittest.TestCase):
         base = pathlib.Path(cls.directory.name)
         cls.path = base / "dataset.yaml"
         cls.path.write_text(SCENARIO)
-        subprocess.run([DMISE, "dataset", cls.path, "--seeds", "5..10", "--out", base / "out"], check=True, capture_output=True)
-        cls.written = list(open_dataset(base / "out"))
+        cls.out = base / "out"
+        subprocess.run([DMISE, "dataset", cls.path, "--seeds", "5..10", "--out", cls.out], check=True, capture_output=True)
+        cls.written = list(open_dataset(cls.out))
 
     @classmethod
     def tearDownClass(cls):
@@ -85,6 +70,30 @@ class Samples(unittest.TestCase):
                 made = [sample for each in pool.imap(functools.partial(map_seed, self.path), SEEDS) for sample in each]
             self.assertEqual(list(map(as_bytes, made)), list(map(as_bytes, self.written)), method)
 
+    def test_a_process_that_is_forked_while_a_sample_is_made(self):
+        """It makes its own: the thread that makes the other is not in it."""
+        ended = threading.Event()
+
+        def make():
+            while not ended.is_set():
+                map_seed(self.path, 5)
+
+        thread = threading.Thread(target=make)
+        thread.start()
+        try:
+            context = multiprocessing.get_context("fork")
+            for _ in range(5):
+                process = context.Process(target=map_seed, args=(self.path, 6))
+                process.start()
+                process.join(60.0)
+                code = process.exitcode
+                process.kill()
+                process.join()
+                self.assertEqual(code, 0)
+        finally:
+            ended.set()
+            thread.join()
+
     def test_scenarios_may_be_text(self):
         """The digest is of the text; images are the same."""
         ours, theirs = map_seed(SCENARIO, 7), map_seed(self.path, 7)
@@ -95,16 +104,15 @@ class Samples(unittest.TestCase):
 
     def test_the_number_of_objects_is_drawn(self):
         """A choice among lists, one of which is empty: images with none, one and two."""
-        fixed = SCENARIO[:SCENARIO.index("  - name: east")].replace("{uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}",
-                                                                    "2018-01-21T03:00:00Z").replace("{uniform: [25, 40]}", "33")
+        def night(objects, pointing):
+            return ("simulation: {start: 2018-01-21T03:00:00Z, duration_s: 20, tick_s: 10}\n"
+                    f"objects: {objects}\nsensors:\n{sensor('west', pointing, columns=COLUMNS, rows=ROWS)}")
+
         alone = "{catalogue: demo, only: [GOES 13], radius_m: 3}"
-        simulated = fixed.replace("{log_uniform: [1, 8]}\n", "4\n").replace("{one_of: [GOES 13, GOES 14]}", "GOES 13")
-        simulated = simulated.replace("{normal: {mean: 6, sigma: 1, min: 3}}", "6").replace("{integers: [90, 110]}", "100")
-        report = next(dmise.Simulation(simulated.replace("{log_uniform: [1, 8]}", "3")).frames()).report
+        report = next(dmise.Simulation(night(f"[{alone}]", "{target: GOES 13, tracking: fixed}")).frames()).report
         there = f"{{ra_deg: {np.degrees(report.boresight_ra_rad)}, dec_deg: {np.degrees(report.boresight_dec_rad)}, tracking: fixed}}"
-        lists = f"{{one_of: [[], [{alone}], [{alone}, {{name: twin, radius_m: 3, motion: {{fixed: {{gcrs_m: [-4e7, 1e7, 0]}}}}}}]]}}"
-        drawn = fixed.replace("[{catalogue: demo, only: [GOES 13, GOES 14, GOES 15], radius_m: {log_uniform: [1, 8]}}]", lists)
-        drawn = drawn.replace("{target: {one_of: [GOES 13, GOES 14]}, tracking: fixed}", there)
+        twin = "{name: twin, radius_m: 3, motion: {fixed: {gcrs_m: [-4e7, 1e7, 0]}}}"
+        drawn = night(f"{{one_of: [[], [{alone}], [{alone}, {twin}]]}}", there)
         made = [sample for sample in stream(drawn, range(1, 13)) if sample.labels["frame"] == 1]
         self.assertEqual({int(sample.labels["drawn"]["objects.one_of"]) for sample in made}, {0, 1, 2})
         for sample in made:
@@ -113,10 +121,14 @@ class Samples(unittest.TestCase):
             self.assertEqual(bool(sample.mask.any()), bool(names))
 
     def test_a_scenario_that_changes_is_read_again(self):
+        """Also one that keeps its size and time."""
         path = self.path.with_name("changing.yaml")
         path.write_text(SCENARIO)
         before = map_seed(path, 5)[0]
-        path.write_text(SCENARIO.replace("full_well_e: 60000", "full_well_e: 61000.0"))
+        facts = path.stat()
+        path.write_text(SCENARIO.replace("full_well_e: 60000", "full_well_e: 61000"))
+        os.utime(path, ns=(facts.st_atime_ns, facts.st_mtime_ns))
+        self.assertEqual(path.stat().st_size, facts.st_size)
         self.assertNotEqual(map_seed(path, 5)[0].labels["digest"], before.labels["digest"])
 
     def test_workers_share_the_seeds(self):
@@ -138,8 +150,8 @@ class Samples(unittest.TestCase):
 
     def test_streams_give_what_a_model_takes(self):
         image, mask = next(iter(FrameStream(self.path, [6])))
-        self.assertEqual((image.dtype, image.shape, mask.dtype, mask.shape), (np.float32, (1, 64, 96), np.int64, (64, 96)))
-        keys = list(FrameStream(self.path, SEEDS, transform=lambda sample: sample.key, worker=1, workers=3))
+        self.assertEqual((image.dtype, image.shape, mask.dtype, mask.shape), (np.float32, (1, ROWS, COLUMNS), np.int64, (ROWS, COLUMNS)))
+        keys = list(FrameStream(self.path, SEEDS, transform=key_of, worker=1, workers=3))
         self.assertEqual(keys, [sample.key for sample in self.written if sample.labels["seed"] in (6, 9)])
 
     def test_bad_input_is_one_line(self):
@@ -156,14 +168,35 @@ class Samples(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "worker"):
                 FrameStream(self.path, SEEDS, worker=worker, workers=workers)
 
+    def test_damaged_data_sets(self):
+        """By a manifest that is none, and archives that are not as it says."""
+        with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+            copy = shutil.copytree(self.out, pathlib.Path(directory) / "copy")
+            manifest, archive = copy / "dataset.json", copy / "dataset-000000.tar"
+            info, content = json.loads(manifest.read_text()), archive.read_bytes()
+
+            def expect_refused(shard, reason):
+                manifest.write_text(json.dumps(info | {"shards": [info["shards"][0] | shard]}))
+                with self.assertRaisesRegex(ValueError, reason):
+                    open_dataset(copy)[0]
+
+            for shard in ({"frames": "24"}, {"frames": -1}, {"frames": 1e30}, {"name": "../dataset-000000.tar"}, {"name": 5}):
+                expect_refused(shard, "dataset.json: not the manifest of a data set: no archive: ")
+            expect_refused({"frames": 25}, "dataset-000000.tar: does not have the frames of dataset.json")
+            for damaged in (content[:900], bytes(len(content)), b"", b"x" * 10240):
+                archive.write_bytes(damaged)
+                expect_refused({}, "dataset-000000.tar: (does not have|not an archive)")
+
     def test_pytorch_reads_a_stream(self):
         try:
             from torch.utils.data import DataLoader
         except ImportError:
             self.skipTest("torch is not installed")
-        loader = DataLoader(FrameStream(self.path, SEEDS), batch_size=None, num_workers=2)
-        self.assertEqual(len(list(loader)), len(self.written))
+        stream_of_keys = FrameStream(self.path, SEEDS, transform=key_of)
+        for workers in (0, 2, 4):
+            loader = DataLoader(stream_of_keys, batch_size=None, num_workers=workers)
+            self.assertEqual(sorted(loader), [sample.key for sample in self.written])
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    package.main()

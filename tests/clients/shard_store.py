@@ -3,42 +3,33 @@
     shard_store.py DMISE
 """
 import logging
+import multiprocessing
 import pathlib
 import pickle
 import subprocess
 import sys
 import tempfile
-import unittest
+import unittest.mock
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "build/python"))
+import package
 
-try:
-    import numpy as np
-    import s3fs
-    from moto.server import ThreadedMotoServer
-except ImportError as missing:
-    print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
-    sys.exit(77)
+package.require("numpy", "moto.server", "s3fs")
+import numpy as np  # noqa: E402
+import s3fs  # noqa: E402
+from moto.server import ThreadedMotoServer  # noqa: E402
+
 import dmise  # noqa: E402
 from dmise.datasets import open_dataset, write_shards  # noqa: E402
+from dmise.shard_store import file_system  # noqa: E402
+from package import DMISE  # noqa: E402
+from scenarios import DRAWN_HEAD, drawn_sensor  # noqa: E402
 
-DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
-SCENARIO = """\
-simulation: {start: {uniform: [2018-01-21T03:00:00Z, 2018-01-21T09:00:00Z]}, duration_s: 20, tick_s: 10}
-objects: [{catalogue: demo, only: [GOES 13, GOES 14], radius_m: {log_uniform: [1, 8]}}]
-output: {fits: off}
-sensors:
-  - name: watcher
-    site: {latitude_deg: {uniform: [25, 40]}, longitude_deg: -100, height_m: 300}
-    camera:
-      optics: {columns: 48, rows: 32, pixel_pitch_m: 9e-6, focal_length_m: 0.2, aperture_m: 0.1, psf_fwhm_px: 2}
-      detector: {read_noise_e: 6, full_well_e: 60000, gain_e_per_dn: 1, bias_dn: 100}
-      band: {name: V, centre_m: 0.55e-6, width_m: 0.128e-6}
-    pointing: {target: {one_of: [GOES 13, GOES 14]}, tracking: fixed}
-    exposure_s: {log_uniform: [1, 8]}
-    cadence_s: 10
-"""
+SCENARIO = DRAWN_HEAD + drawn_sensor("watcher", 48, 32)
+
+
+def expect(dataset, key):
+    """A process that ends with 0 if the first sample has the key."""
+    sys.exit(dataset[0].key != key)
 
 
 class ShardStore(unittest.TestCase):
@@ -88,6 +79,30 @@ class ShardStore(unittest.TestCase):
             np.testing.assert_array_equal(ours.image, theirs.image)
             np.testing.assert_array_equal(ours.mask, theirs.mask)
 
+    def test_a_forked_process_reads(self):
+        """As the workers of a DataLoader, after the process that they come from has read."""
+        self.assertTrue(self.write("forked", range(5, 7)))
+        found = open_dataset("s3://images/forked", self.options)
+        process = multiprocessing.get_context("fork").Process(target=expect, args=(found, found[0].key))
+        process.start()
+        process.join(60.0)
+        self.assertEqual(process.exitcode, 0)
+
+    def test_what_another_task_has_removed_meanwhile(self):
+        """A listing that has a part which is no longer there is read again."""
+        self.assertTrue(self.write("ended", range(5, 7)))
+        files, root = file_system("s3://images/ended", self.options)
+        find, listings = files.find, []
+
+        def find_once_more(path, **options):
+            found = find(path, **options)
+            listings.append(found)
+            return found if len(listings) > 1 else found | {f"{root}/parts/dataset-000000.json": {"size": 1}}
+
+        with unittest.mock.patch.object(files, "find", find_once_more):
+            self.assertTrue(self.write("ended", range(5, 7)))
+        self.assertEqual(len(listings), 2)
+
     def test_tasks_share_archives_and_continue(self):
         """The second of two tasks, then the first, which found an archive whose record was not yet written."""
         self.assertFalse(self.write("shared", shard="2/2"))
@@ -114,4 +129,4 @@ class ShardStore(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    package.main()

@@ -83,6 +83,9 @@ TEST(AnyFrame, SoDoFloatsAndCompressedIntegers) {
   }
   const Frame frame = read_one(floats, {.stated = {{"EGAIN", "32767.5"}}});
   expect_same(detections_in(frame), expected, 0.5);
+  for (const std::size_t i : {0, 12345, columns * rows - 1})
+    EXPECT_NEAR(frame.count_zero + frame.count_step * frame.counts.pixels[i], floats.values[i],
+                0.51 * frame.count_step);
   const double step = frame.header.gain_e_per_dn / 32767.5;
   EXPECT_NEAR((frame.header.saturation_dn - frame.header.bias_dn) * step, 63900 / 65535.0, 1e-9);
   ForeignImage packed = image_of(scene.counts, all_cards(scene.header));

@@ -12,14 +12,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from .errors import EngineError, ScenarioError
-from .scenario_text import text_of
+from .scenario_text import Scenario, source_of
 
-Scenario = str | os.PathLike[str] | Mapping[str, Any]
 _INVALID_INPUT = 2  # exit code of the program
 
 
@@ -55,7 +54,7 @@ def tradeoff(scenario: Scenario, **options: Any) -> dict[str, Any]:
 def score(run: str | os.PathLike[str] | None = None, **options: Any) -> dict[str, Any]:
     """Compares detections with truth, of the directory of a run, or with `frames` and `truth` of any FITS frames."""
     arguments = [] if run is None else [os.fspath(run)]
-    found: dict[str, Any] = json.loads(_run("score", arguments, {"json": True, **options}))
+    found: dict[str, Any] = json.loads(run_command("score", arguments, {"json": True, **options}))
     return found
 
 
@@ -79,16 +78,15 @@ def _answer(command: str, scenario: Scenario, **options: Any) -> Any:
 
 
 def _printed(command: str, scenario: Scenario, **options: Any) -> str:
-    with _file_of(scenario) as path:
-        return _run(command, [path], options)
+    with file_of(scenario) as path:
+        return run_command(command, [path], options)
 
 
 @contextmanager
-def _file_of(scenario: Scenario) -> Iterator[str]:
+def file_of(scenario: Scenario) -> Iterator[str]:
     """A file of the scenario, in memory if it is none."""
-    text = text_of(scenario)
+    text, path = source_of(scenario)
     if text is None:
-        path = os.fspath(scenario)  # type: ignore[arg-type]
         yield f"./{path}" if path.startswith("-") else path  # which is no option
         return
     file = os.memfd_create("scenario", 0)  # which the program inherits
@@ -99,7 +97,8 @@ def _file_of(scenario: Scenario) -> Iterator[str]:
         os.close(file)
 
 
-def _run(command: str, arguments: list[str], options: dict[str, Any]) -> str:
+def run_command(command: str, arguments: list[str], options: dict[str, Any]) -> str:
+    """What the program prints. Raises `ScenarioError` for invalid input, `EngineError` for other failures."""
     words = [*arguments, *(word for name, value in options.items() for word in _words_of(name, value))]
     done = subprocess.run([program(), command, *words], capture_output=True, text=True, errors="replace",
                           close_fds=False, stdin=subprocess.DEVNULL)

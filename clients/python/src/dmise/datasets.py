@@ -17,6 +17,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import tarfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -24,11 +25,12 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from .records import ArrayLike
+from .scenario_text import Scenario
 
 if TYPE_CHECKING:
     from .frame_stream import FrameStream as FrameStream
 
-Scenario = str | os.PathLike[str] | Mapping[str, Any]
+_MEMBERS = {"image.npy", "mask.npy", "labels.json"}  # of each frame; docs/datasets.md has what else there may be
 
 
 def mask_of(segmentation: dict[str, Any]) -> ArrayLike:
@@ -68,22 +70,26 @@ class Sample:
         return [mask_of(found["segmentation"]) for found in self.objects]
 
 
+def _frames_of(shard: Any) -> int:
+    """How many frames an archive has, by the manifest. Raises ValueError for an entry that is none of `dmise dataset`."""
+    name, frames = shard["name"], shard["frames"]
+    if not (isinstance(name, str) and re.fullmatch(r"dataset-\d{6,}\.tar", name) and type(frames) is int and frames >= 0):
+        raise ValueError(f"no archive: {str(shard)[:80]}")
+    return frames
+
+
 class Dataset:
     """The frames of a data set, by number; may be passed to other processes."""
 
     def __init__(self, directory: str | pathlib.Path, storage_options: Mapping[str, Any] | None = None) -> None:
-        self._files: Any = None
-        self.directory = pathlib.PurePath(directory)
-        if "://" in str(directory):
-            from .shard_store import file_system
-
-            self._files, root = file_system(str(directory), storage_options)
-            self.directory = pathlib.PurePosixPath(root)
-        path = f"{os.fspath(directory).rstrip('/')}/dataset.json"
+        self.directory = directory if "://" in str(directory) else pathlib.Path(directory)
+        self._url = os.fspath(directory).rstrip("/")
+        self._options = storage_options
+        path = self._path("dataset.json")
         try:
             with self._open("dataset.json") as file:
                 self.info: dict[str, Any] = json.loads(file.read())
-            self._ends = list(itertools.accumulate(shard["frames"] for shard in self.info["shards"]))
+            self._ends = list(itertools.accumulate(map(_frames_of, self.info["shards"])))
         except OSError as error:
             raise FileNotFoundError(f"{path}: {error.strerror or 'cannot be read'}; is this the directory of a complete data set?") from None
         except (ValueError, TypeError, KeyError) as error:
@@ -120,12 +126,19 @@ class Dataset:
                 while piece := file.read(1 << 20):
                     sha.update(piece)
             if sha.hexdigest() != entry["sha256"]:
-                raise ValueError(f"{self.directory / entry['name']}: its SHA-256 is not that of dataset.json")
+                raise ValueError(f"{self._path(entry['name'])}: its SHA-256 is not that of dataset.json")
+
+    def _path(self, name: str) -> str:
+        return str(self.directory / name) if isinstance(self.directory, pathlib.Path) else f"{self._url}/{name}"
 
     def _open(self, name: str) -> Any:
         """A file of the data set, of bytes."""
-        path = str(self.directory / name)
-        return open(path, "rb") if self._files is None else self._files.open(path, "rb")
+        if isinstance(self.directory, pathlib.Path):
+            return open(self.directory / name, "rb")
+        from .shard_store import file_system
+
+        files, root = file_system(self._url, self._options)  # one for each process, of fsspec's own cache
+        return files.open(f"{root}/{name}", "rb")
 
     def _name(self, shard: int) -> str:
         return str(self.info["shards"][shard]["name"])
@@ -133,18 +146,24 @@ class Dataset:
     def _members_of(self, shard: int) -> list[dict[str, tuple[int, int]]]:
         """Places in the archive of each frame's files, by ending."""
         if shard not in self._members:
+            name = self._name(shard)
             frames: dict[str, dict[str, tuple[int, int]]] = {}
-            with self._open(self._name(shard)) as file, tarfile.open(fileobj=file, mode="r:") as archive:
-                for member in archive:
-                    key, _, ending = member.name.partition(".")
-                    frames.setdefault(key, {})[ending] = (member.offset_data, member.size)
+            try:
+                with self._open(name) as file, tarfile.open(fileobj=file, mode="r:") as archive:
+                    for member in archive:
+                        key, _, ending = member.name.partition(".")
+                        frames.setdefault(key, {})[ending] = (member.offset_data, member.size)
+            except tarfile.TarError as error:
+                raise ValueError(f"{self._path(name)}: not an archive of a data set: {error}") from None
+            if len(frames) != self.info["shards"][shard]["frames"] or not all(_MEMBERS <= frame.keys() for frame in frames.values()):
+                raise ValueError(f"{self._path(name)}: does not have the frames of dataset.json")
             self._members[shard] = list(frames.values())
         return self._members[shard]
 
 
 def open_dataset(directory: str | pathlib.Path, storage_options: Mapping[str, Any] | None = None) -> Dataset:
     """The data set in a directory, or at a URL of fsspec: "s3://bucket/prefix". `storage_options` are those of its file
-    system. Raises FileNotFoundError for one that is not complete."""
+    system. Raises FileNotFoundError for one that is not complete, ValueError, also when a frame is read, for a damaged one."""
     return Dataset(directory, storage_options)
 
 

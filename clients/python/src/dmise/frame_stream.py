@@ -5,7 +5,8 @@ import operator
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from .datasets import Sample, Scenario, image_and_mask, map_seed
+from .datasets import Sample, image_and_mask, map_seed
+from .scenario_text import Scenario
 
 try:
     from torch.utils.data import IterableDataset, get_worker_info

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,15 +16,16 @@ import numpy.typing as npt
 
 from .engine import core, streams
 from .errors import EngineError, InputError
-from .plain_fits import fits_of
-from .scenario_text import seed_of, text_of
+from .scenario_text import Scenario, seed_of, source_of
 from .simulation import SimulatedFrame
+from .solution import file_of_frame
 from .tables import Table
 
 Array = npt.NDArray[Any]
 GRID = 9           # places along each axis where geometries are compared
 CLOSE_PX = 1e-3    # between geometries, of what a camera's attitude and focal length can do
-MOST_ROUNDS = 6
+MAX_ROUNDS = 6
+MAX_ELECTRONS = 1e15  # in a pixel: their number is drawn as one of 64 bits
 LABELS = [("catalogue_number", np.int64), ("start_x_px", float), ("start_y_px", float), ("end_x_px", float),
           ("end_y_px", float), ("x_px", float), ("y_px", float), ("signal_e", float), ("magnitude", float), ("snr", float),
           ("label", np.int64)]
@@ -50,7 +50,7 @@ class Injected:
     facts: dict[str, Any]
 
 
-def inject(image: Any, header: Any, scenario: str | os.PathLike[str] | Mapping[str, Any], *, seed: int = 1,
+def inject(image: Any, header: Any, scenario: Scenario, *, seed: int = 1,
            sensor: str = "", zero_point_mag: float | None = None, gain_e_per_dn: float | None = None,
            psf_fwhm_px: float | None = None, saturation_dn: float | None = None, tracking: str | None = None,
            catalogue: str | os.PathLike[str] = "kstars", blind: bool = False, threads: int = 1) -> Injected:
@@ -69,25 +69,25 @@ def inject(image: Any, header: Any, scenario: str | os.PathLike[str] | Mapping[s
     Raises `InputError` for what neither the frame nor an argument tells.
     """
     seed = seed_of(seed) or 0
-    content = image.to_fits() if isinstance(image, SimulatedFrame) and header is None else fits_of(image, header)
-    pixels = np.asarray(image.counts if isinstance(image, SimulatedFrame) else image)
-    found = core.calibrate(content, "image", os.fspath(catalogue), blind, threads)
+    found = core.calibrate(file_of_frame(image, header), "image", os.fspath(catalogue), blind, threads)
+    pixels = image.counts if isinstance(image, SimulatedFrame) else image if isinstance(image, np.ma.MaskedArray) else np.asarray(image)
     camera = _Camera(found, pixels, {"zero_point_mag": zero_point_mag, "gain_e_per_dn": gain_e_per_dn,
                                      "psf_fwhm_px": psf_fwhm_px, "saturation_dn": saturation_dn}, tracking)
     made, worst_px = camera.simulate(_drawn(scenario, seed), sensor, threads)
     factor = 10.0 ** (0.4 * (camera.zero_point_mag - made.zero_point_mag))
-    light = np.asarray(camera.turned(made.objects()) * np.float32(factor))
+    objects = camera.turned(made.objects())
+    if factor * float(objects.max()) > MAX_ELECTRONS:
+        raise InputError(f"zero_point_mag: gives a pixel more than {MAX_ELECTRONS:g} electrons, got {camera.zero_point_mag}")
+    light = np.asarray(objects * np.float32(factor))
     mask = np.ascontiguousarray(camera.turned(made.labels()))
     labels, mask = _labels([json.loads(line) for line in made.truths()], light, mask, camera, factor)
     return Injected(_exposed(pixels, light, camera, np.random.default_rng([seed, 0x1a])), labels, light, mask,
                     camera.facts | {"geometry_px": worst_px})
 
 
-def _drawn(scenario: str | os.PathLike[str] | Mapping[str, Any], seed: int) -> Any:
-    text = text_of(scenario)
-    if text is not None or isinstance(scenario, Mapping):
-        return core.Simulation.drawn_of_text(text, "scenario", seed)
-    return core.Simulation.drawn_of_file(os.fspath(scenario), seed)
+def _drawn(scenario: Scenario, seed: int) -> Any:
+    text, name = source_of(scenario)
+    return core.Simulation.drawn_of_file(name, seed) if text is None else core.Simulation.drawn_of_text(text, name, seed)
 
 
 class _Camera:
@@ -96,7 +96,9 @@ class _Camera:
     def __init__(self, found: Any, pixels: Array, stated: dict[str, float | None], tracking: str | None) -> None:
         _require_known(found, stated, tracking)
         self.found, (self.rows, self.columns) = found, pixels.shape
-        step, zero = _scale(pixels, found.counts())  # a count of the engine is this many of the image
+        if min(pixels.shape) < 2:
+            raise InputError(f"image: must have two rows and two columns or more, got shape {pixels.shape}")
+        step, zero = found.count_step, found.count_zero  # what the engine reads as a count of 1, and as none
         self.gain = float(stated["gain_e_per_dn"] or found.gain_e_per_dn / step)
         e_per_found_e = self.gain * step / found.gain_e_per_dn
         magnitude = stated["zero_point_mag"]
@@ -126,7 +128,7 @@ class _Camera:
         like = self._first_guess()
         like.sensor = sensor
         wanted = np.stack([x, self.rows - 1 - y if self.mirrored else y], axis=1)
-        for _ in range(MOST_ROUNDS):
+        for _ in range(MAX_ROUNDS):
             made = _only_frame(simulation.like(like), threads)
             away = np.asarray(made.wcs.pixels(sky.tolist())) - wanted
             if not np.isfinite(away).all():
@@ -173,8 +175,12 @@ def _require_known(found: Any, stated: dict[str, float | None], tracking: str | 
     """Raises InputError for what neither the frame nor an argument tells, and for an argument that is impossible."""
     for name, value in stated.items():
         signed = name == "zero_point_mag"
-        if value is not None and not (math.isfinite(value) and (signed or value > 0.0)):
+        if value is None:
+            continue
+        if not math.isfinite(value) or (value <= 0.0 and not signed):
             raise InputError(f"{name}: must be a number{'' if signed else ' > 0'}, got {value}")
+        if not (abs(value) <= 100.0 if signed else 1e-30 <= value <= 1e30):
+            raise InputError(f"{name}: must be in {'-100..100' if signed else '1e-30..1e30'}, got {value}")
     if tracking not in (None, "sidereal", "fixed"):
         raise InputError(f'tracking: must be "sidereal" or "fixed", got {tracking!r}')
     unknown = found.unknown.split()
@@ -206,17 +212,6 @@ def _only_frame(simulation: Any, threads: int) -> Any:
         stream.stop()
 
 
-def _scale(pixels: Array, counts: Array) -> tuple[float, float]:
-    """The image is step x counts + zero, of which counts may be clipped."""
-    seen = np.isfinite(pixels)
-    inner = np.percentile(pixels[seen], (1, 99)) if seen.any() else np.zeros(2)
-    of_counts = np.percentile(counts[seen], (1, 99)) if seen.any() else np.zeros(2)
-    if of_counts[1] <= of_counts[0]:
-        return 1.0, 0.0
-    step = float((inner[1] - inner[0]) / (of_counts[1] - of_counts[0]))
-    return step, float(inner[0] - step * of_counts[0])
-
-
 def _labels(truths: list[dict[str, Any]], light: Array, mask: Array, camera: _Camera,
             factor: float) -> tuple[Table, npt.NDArray[np.uint16]]:
     """Labels of the objects with light, numbered from 1 in the mask."""
@@ -241,15 +236,22 @@ def _labels(truths: list[dict[str, Any]], light: Array, mask: Array, camera: _Ca
     return table.view(Table), mask
 
 
+def _highest(kind: np.dtype[Any]) -> float:
+    """The largest number of 64 bits that a type holds."""
+    if np.issubdtype(kind, np.floating):
+        return float(min(np.finfo(kind).max, np.finfo(float).max))
+    largest = float(np.iinfo(kind).max)
+    return largest if int(largest) <= np.iinfo(kind).max else float(np.nextafter(largest, 0.0))
+
+
 def _exposed(pixels: Array, light: Array, camera: _Camera, random: np.random.Generator) -> Array:
     """The image with light, whose electrons arrive by chance, up to saturation."""
-    lit = np.isfinite(pixels) & (light > 0.0)
+    lit = np.isfinite(np.ma.getdata(pixels)) & ~np.ma.getmaskarray(pixels) & (light > 0.0)
     before, added = pixels[lit], random.poisson(light[lit].astype(float)) / camera.gain
-    highest = np.maximum(before.astype(float), camera.saturation)
+    highest = np.minimum(np.maximum(before.astype(float), camera.saturation), _highest(pixels.dtype))
     if np.issubdtype(pixels.dtype, np.integer):
         # The part of a count that the camera's rounding has left is unknown: uniform.
         added = np.floor(added + random.uniform(size=added.size))
-        highest = np.minimum(highest, float(np.iinfo(pixels.dtype).max))
     image = pixels.copy()
     image[lit] = np.minimum(before + added, highest).astype(pixels.dtype)
     return image

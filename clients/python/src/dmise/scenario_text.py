@@ -12,19 +12,21 @@ from typing import Any
 
 from .errors import ScenarioError
 
-MOST_SEED = 2**63 - 1
+Scenario = str | os.PathLike[str] | Mapping[str, Any]  # the path of a file, YAML text, or a mapping with its keys
+MAX_SEED = 2**63 - 1
 _PLAIN_KEY = re.compile("[A-Za-z][A-Za-z0-9_]*")  # a text that YAML takes without quotes
-_NO_TEXT = {"true", "false", "null", "on", "off", "yes", "no", "y", "n"}  # unless in quotes
+_NOT_UTF8 = re.compile("[\0\ud800-\udfff]")
+_NO_TEXT = {"true", "false", "null", "on", "off", "yes", "no", "y", "n"}  # in any case, unless in quotes
 
 
-def text_of(scenario: str | os.PathLike[str] | Mapping[str, Any]) -> str | None:
-    """YAML text of a scenario; None of the path of a file."""
+def source_of(scenario: Scenario) -> tuple[str | None, str]:
+    """The YAML text of a scenario with its name in messages; of a file None with its path."""
     if isinstance(scenario, Mapping):
-        return json.dumps(_plain(scenario, ""), indent=1)  # JSON is YAML; lines serve messages
-    if isinstance(scenario, os.PathLike):
-        return None
-    if isinstance(scenario, str):
-        return scenario if "\n" in scenario else None
+        return json.dumps(_plain(scenario, ""), indent=1), "scenario"  # JSON is YAML; lines serve messages
+    if isinstance(scenario, str) and "\n" in scenario:
+        return _valid(scenario), "scenario"
+    if isinstance(scenario, (str, os.PathLike)):
+        return None, _valid(os.fsdecode(scenario))
     raise TypeError(f"scenario: must be a path, YAML text or a mapping, got {type(scenario).__name__}")
 
 
@@ -50,6 +52,12 @@ def _parts(value: Any) -> Any:
     return value.values() if isinstance(value, dict) else value
 
 
+def _valid(text: str) -> str:
+    if _NOT_UTF8.search(text):
+        raise ScenarioError("scenario: has NUL, or a character that UTF-8 cannot encode")
+    return text
+
+
 def _leaf(value: Any) -> str:
     """A number, text, or short list or mapping: JSON, which is YAML."""
     if isinstance(value, dict):
@@ -58,7 +66,7 @@ def _leaf(value: Any) -> str:
         return "[" + ", ".join(map(_leaf, value)) + "]"
     if isinstance(value, float) and "e" in (text := repr(value)) and "." not in text:
         return text.replace("e", ".0e")  # else a text in YAML 1.1
-    return value if isinstance(value, str) and _PLAIN_KEY.fullmatch(value) and value not in _NO_TEXT else json.dumps(value)
+    return value if isinstance(value, str) and _PLAIN_KEY.fullmatch(value) and value.lower() not in _NO_TEXT else json.dumps(value)
 
 
 def seed_of(seed: Any) -> int | None:
@@ -66,8 +74,8 @@ def seed_of(seed: Any) -> int | None:
     if seed is None:
         return None
     number = operator.index(seed)
-    if not 0 <= number <= MOST_SEED:
-        raise ScenarioError(f"seed: must be in 0..{MOST_SEED}, got {number}")
+    if not 0 <= number <= MAX_SEED:
+        raise ScenarioError(f"seed: must be in 0..{MAX_SEED}, got {number}")
     return number
 
 

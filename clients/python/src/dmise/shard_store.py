@@ -9,8 +9,9 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .commands import Scenario, _file_of, _run
+from .commands import file_of, run_command
 from .errors import EngineError, ScenarioError
+from .scenario_text import Scenario
 
 _MANIFEST, _PLAN = "dataset.json", "parts/plan.json"
 # In the order in which they are sent: a part's .json tells that its archive is there, the manifest that all is.
@@ -18,6 +19,7 @@ _SENT = tuple(re.compile(pattern) for pattern in (
     r"parts/plan\.json", r"dataset-\d{6,}\.tar", r"parts/dataset-\d{6,}\.coco", r"parts/dataset-\d{6,}\.json", r"scenario\.yaml",
     r"coco\.json", r"dataset\.json"))
 _Version = tuple[int, int, int]
+MAX_ROUNDS = 5  # of reading a store that other tasks change
 
 
 def file_system(url: str, options: Mapping[str, Any] | None) -> tuple[Any, str]:
@@ -41,6 +43,14 @@ class _Mirror:
 
     def fetch(self) -> None:
         """Brings what is in the store and not here, or not in this size."""
+        for _ in range(MAX_ROUNDS):
+            try:
+                return self._fetch_listed()
+            except FileNotFoundError:
+                pass  # another task has removed parts, for all is done
+        raise EngineError(f"{self.url}: its files change while they are read")
+
+    def _fetch_listed(self) -> None:
         self.files.invalidate_cache()
         for path, facts in sorted(self.files.find(self.root, detail=True).items()):
             name = path[len(self.root) + 1:]
@@ -121,10 +131,12 @@ def write(scenario: Scenario, seeds: range, url: str, per_shard: int, shard: str
     """As `dmise.datasets.write_shards` says."""
     if not isinstance(seeds, range) or seeds.step != 1 or not seeds:
         raise ValueError(f"seeds: must be a range of one or more in steps of 1, got {seeds}")
+    if not os.fspath(url):
+        raise ValueError("url: is empty")
     if per_shard < 1:
         raise ValueError(f"per_shard: must be from 1, got {per_shard}")
     task, tasks = _task(shard)
-    with tempfile.TemporaryDirectory(prefix="dmise-shards-") as directory, _file_of(scenario) as path:
+    with tempfile.TemporaryDirectory(prefix="dmise-shards-") as directory, file_of(scenario) as path:
         mirror = _Mirror(pathlib.Path(directory), url, options)
         mirror.fetch()
         there = mirror.seeds() or seeds
@@ -132,8 +144,8 @@ def write(scenario: Scenario, seeds: range, url: str, per_shard: int, shard: str
 
         def run(part: str, **more: Any) -> None:
             try:
-                _run("dataset", [path], {"seeds": f"{seeds.start}..{seeds.stop - 1}", "per_shard": per_shard, "out": directory,
-                                         "shard": part, "workers": workers, **more})
+                run_command("dataset", [path], {"seeds": f"{seeds.start}..{seeds.stop - 1}", "per_shard": per_shard,
+                                                "out": directory, "shard": part, "workers": workers, **more})
             except (ScenarioError, EngineError) as error:
                 raise type(error)(str(error).replace(directory, url).partition("; --force")[0]) from None
 

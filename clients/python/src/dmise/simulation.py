@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import io
 import json
-import os
 import pathlib
 import types
 import warnings
@@ -26,7 +25,7 @@ from .engine import core, streams
 from .errors import InputError
 from .json_lines import record_of_line
 from .records import Detection, FrameReport, Record, Truth
-from .scenario_text import seed_of, text_of
+from .scenario_text import Scenario, seed_of, source_of
 from .tables import Table, table_of
 
 LAYERS = ("stars", "objects", "sky")
@@ -41,13 +40,12 @@ class Simulation:
     Raises `ScenarioError` with file, line, column and key, as the command line prints it.
     """
 
-    def __init__(self, scenario: str | os.PathLike[str] | Mapping[str, Any], seed: int | None = None) -> None:
-        self._text = text_of(scenario)
+    def __init__(self, scenario: Scenario, seed: int | None = None) -> None:
+        self._text, self._name = source_of(scenario)
         if self._text is None:
-            self._path = os.fspath(scenario)  # type: ignore[arg-type]
-            self._core = core.Simulation.of_file(self._path, seed_of(seed))
+            self._core = core.Simulation.of_file(self._name, seed_of(seed))
         else:
-            self._core = core.Simulation.of_text(self._text, "scenario", seed_of(seed))
+            self._core = core.Simulation.of_text(self._text, self._name, seed_of(seed))
 
     @property
     def sensors(self) -> list[str]:
@@ -83,7 +81,7 @@ class Simulation:
     @property
     def yaml(self) -> str:
         """The scenario as YAML, to keep it or to give it to the command line; relative paths in it are as given."""
-        return self._text if self._text is not None else pathlib.Path(self._path).read_text(encoding="utf-8")
+        return pathlib.Path(self._name).read_text(encoding="utf-8") if self._text is None else self._text
 
     def frames(self, *sensors: str, threads: int = 1, layers: bool = False,
                progress: bool = False) -> Iterator[SimulatedFrame]:

@@ -40,8 +40,7 @@ def detect(image: Any, header: Any = None, *, catalogue: str | os.PathLike[str] 
     catalogue  of stars: kstars, tycho2, a file, or none
     blind      finds where the frame points by its stars alone
     """
-    content = _content(image, header)
-    lines, report, missing, assumed = core.detect(content, "image", os.fspath(catalogue), blind, threads)
+    lines, report, missing, assumed = core.detect(file_of_frame(image, header), "image", os.fspath(catalogue), blind, threads)
     found = table_of([record_of_line(json.loads(line), Detection, None) for line in lines], Detection).view(Detections)
     found.report = record_of_line(json.loads(report), FrameReport, None)
     found.missing, found.assumed = missing, assumed
@@ -74,11 +73,10 @@ def solve(image: Any, header: Any = None, *, catalogue: str | os.PathLike[str] =
 
     Arguments are as of `detect`. Raises `EngineError` if there is no solution.
     """
-    content = _content(image, header)
-    solution, cards, missing, assumed = core.solve(content, "image", os.fspath(catalogue), blind, threads)
+    solution, cards, missing, assumed = core.solve(file_of_frame(image, header), "image", os.fspath(catalogue), blind, threads)
     return Solution(json.loads(solution), types.MappingProxyType(values_of(cards)), cards, missing, assumed)
 
 
-def _content(image: Any, header: Any) -> bytes:
+def file_of_frame(image: Any, header: Any) -> bytes:
     """The FITS file of a frame."""
     return image.to_fits() if isinstance(image, SimulatedFrame) and header is None else fits_of(image, header)

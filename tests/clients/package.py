@@ -1,0 +1,38 @@
+"""The Python package under test: where it and its program are, and what its tests need.
+
+Tests of the engine are `TEST_PROGRAM [DMISE [TEST..]]`, where a TEST is such as Frames.test_wcs_is_astropys.
+"""
+import importlib
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SANITIZED = "DMISE_TEST_PACKAGE" in os.environ  # by tests/sanitizers/engine.sh, with a module of its own
+PACKAGE = os.environ.get("DMISE_TEST_PACKAGE", str(ROOT / "build/python"))
+DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
+sys.path.insert(0, PACKAGE)
+os.environ["PATH"] = f"{DMISE.parent}:{os.environ['PATH']}"  # where the package finds the program, as an installed one does
+
+
+def require(*modules, how="./dmise setup --tests"):
+    """Ends the test as skipped unless all modules are installed; `how` installs them."""
+    for name in modules:
+        try:
+            importlib.import_module(name)
+        except ImportError as missing:
+            print(f"skipped: {missing}" if name.startswith("dmise") else f"skipped: {missing.name or missing} is not installed ({how})")
+            sys.exit(77)
+
+
+def run_python(code):
+    """Words that another process of Python prints."""
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+                          env={**os.environ, "PYTHONPATH": PACKAGE}).stdout.split()
+
+
+def main():
+    """Runs the tests of the program, or those that are named behind DMISE."""
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)
