@@ -83,18 +83,11 @@ std::vector<FitPixel> Starlight::reached_by(const Trail& star) const {
   const double peak = trail_value(star, sigma_px, star.x_px, star.y_px) / noise_e;
   const double reach_px = sigma_px * std::min(14.0, 4.5 + std::log2(std::max(peak, 1.0))) + 1;
   const Around around(star, reach_px);
-  const double wide = star.length_px / 2 * std::abs(std::cos(star.angle_rad)) + reach_px;
-  const double high = star.length_px / 2 * std::abs(std::sin(star.angle_rad)) + reach_px;
-  const int x0 = std::max(0, int(std::ceil(star.x_px - wide))),
-            x1 = std::min(scene_.counts.columns - 1, int(std::floor(star.x_px + wide))),
-            y0 = std::max(0, int(std::ceil(star.y_px - high))),
-            y1 = std::min(scene_.counts.rows - 1, int(std::floor(star.y_px + high)));
   std::vector<FitPixel> pixels;
-  for (int y = y0; y <= y1; ++y) {
-    const auto [first, last] = around.columns(y);
-    for (int x = std::max(x0, first); x <= std::min(x1, last); ++x)
+  around.for_rows(scene_.counts.columns, scene_.counts.rows, [&](int y, int begin, int end) {
+    for (int x = begin; x < end; ++x)
       if (around.has(x, y)) pixels.push_back({x, y});
-  }
+  });
   return pixels;
 }
 
