@@ -127,15 +127,15 @@ FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveS
   FrameSolution out;
   const PlateSky sky(stars, observer_of(h, out.notes));
   // Attitudes of an unknown mount are by the trails that the frame shows.
-  const bool moves =
-      h.mount == "unknown" || (!settings.blind && !h.unknown.has(FrameFact::pointing));
+  const bool unknown_mount = h.mount == "unknown";
+  const bool moves = unknown_mount || (!settings.blind && !h.unknown.has(FrameFact::pointing));
   const StarMotion motion(h, frame.counts.columns, frame.counts.rows);
   const StarSourceSettings search{
       .gain_e_per_dn = h.gain_e_per_dn,
       .saturation_dn = h.saturation_dn - 5 * h.read_noise_e / h.gain_e_per_dn,
       .psf_fwhm_px = h.psf_fwhm_px,
       .motion = moves ? &motion : nullptr,
-      .unknown_mount = h.mount == "unknown"};
+      .unknown_mount = unknown_mount};
   const auto sources = find_star_sources(frame.counts, search, threads);
   out.sources = sources.size();
   const PlateBelief belief = belief_of(frame, settings.blind);

@@ -20,9 +20,14 @@
 namespace dmise {
 namespace {
 
-constexpr double sigma_of_fwhm = 0.42466090014400953;
 constexpr int most_component_px = 4000;  // more are no star
 constexpr double rise_of_a_star = 5.0;   // over a saddle, in noise of a pixel
+
+/// FWHM of a star before pixels widened it, about.
+double fwhm_of(const StarSourceSettings& settings) {
+  constexpr double usual_px = 2.0;
+  return settings.psf_fwhm_px > 0 ? settings.psf_fwhm_px : usual_px;
+}
 
 /// Width of the Gaussian that fits images best, by golden section; the worse half may be blends.
 double best_sigma_px(const SourceMeasure& measure,
@@ -108,8 +113,7 @@ void StarImages::keep(std::size_t most) {
 StarImages::StarImages(const CountImage& counts, const StarSourceSettings& settings,
                        Threads& threads)
     : background_(counts, 64, threads), measure_(counts, background_, settings), threads_(threads) {
-  const double fwhm_px = settings.psf_fwhm_px > 0 ? settings.psf_fwhm_px : 2.0;
-  const double filter_px = std::hypot(sigma_of_fwhm * fwhm_px, std::sqrt(1.0 / 12));
+  const double filter_px = sigma_with_pixel(fwhm_of(settings));
   find(counts, filter_px, settings);
   keep(settings.most);
   moments_.resize(bright_.size());
@@ -125,9 +129,8 @@ StarImages::StarImages(const CountImage& counts, const StarSourceSettings& setti
 /// The middles of trails in a frame whose stars trail; none where they do not.
 std::vector<PlateSource> sources_of_trails(const CountImage& counts,
                                            const StarSourceSettings& settings, Threads& threads) {
-  constexpr double usual_fwhm_px = 2.0;
   const Background background(counts, detection_limits::background_cell_px, threads);
-  const double fwhm_px = settings.psf_fwhm_px > 0 ? settings.psf_fwhm_px : usual_fwhm_px;
+  const double fwhm_px = fwhm_of(settings);
   Scene scene{counts,
               background,
               *settings.motion,

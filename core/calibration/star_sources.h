@@ -16,12 +16,13 @@ struct StarSourceSettings {
   double psf_fwhm_px = 0.0;        // about; 0: not known
   double least_snr = 6.0;
   std::size_t most = 2000;  // the brightest, and further ones until as many are not saturated
-  const StarMotion* motion = nullptr;  // short trails that images have, if known
-  bool unknown_mount = false;          // long trails are found as such
+  const StarMotion* motion = nullptr;  // of the stars, if known
+  bool unknown_mount = false;          // so that long trails by `motion` are searched as trails
 };
 
 /// Returns stars, and sources that look like them, by falling flux [e-]. Places are of a fitted
 /// Gaussian of the stars' common width, or of a trail of it; those of saturated ones are moments.
+/// Of an unknown mount whose stars trail far they are the middles of the trails.
 /// Equal for any number of threads.
 std::vector<PlateSource> find_star_sources(const CountImage& counts,
                                            const StarSourceSettings& settings, Threads& threads);

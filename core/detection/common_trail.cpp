@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/base/quantile.h"
-#include "core/detection/starlight.h"
+#include "core/detection/point_snr.h"
 
 namespace dmise {
 namespace {
@@ -19,62 +21,57 @@ constexpr double least_scatters = 8.0;
 constexpr double shortest_common_sigmas = 5.0, longest_common_px = 400.0;
 constexpr std::size_t most_beginnings = 4000;
 
-struct Slope {
-  float x = 0.0F, y = 0.0F;
-};
+/// Slopes of SNR along a direction.
+using SlopeImage = Image<float, struct SlopeCarrier>;
 
-/// Slopes of a frame where they exceed noise.
+/// Three times that of noise through the filter.
+float least_slope(double sigma_px) { return float(3.0 / (std::sqrt(2.0) * sigma_px)); }
+
+/// Slopes of a frame's SNR of points where they exceed noise.
 class Slopes {
  public:
   explicit Slopes(const Scene& scene)
-      : columns_(scene.counts.columns),
-        rows_(scene.counts.rows),
-        most_(steepest / float(scene.sigma_px)),
-        slopes_(scene.counts.pixels.size()) {
-    const Starlight light(scene);
-    // Of noise through the filter, and by how much edges exceed it.
-    const auto least = float(3.0 / (std::sqrt(2.0) * light.filter_px()));
-    const auto at = [&](int x, int y) { return light.snr(x, y); };
-    for (int y = 1; y + 1 < rows_; ++y)
-      for (int x = 1; x + 1 < columns_; ++x) {
-        const Slope s{0.5F * (at(x + 1, y) - at(x - 1, y)), 0.5F * (at(x, y + 1) - at(x, y - 1))};
-        if (s.x * s.x + s.y * s.y > least * least) slopes_[index(x, y)] = s;
-      }
-  }
+      : snr_(point_snr(scene)),
+        least_(least_slope(scene.sigma_px)),
+        most_(steepest / float(scene.sigma_px)) {}
 
   /// Direction along which most edges run; empty if they run in all.
   std::optional<double> direction_rad() const {
     double plus = 0.0, cross = 0.0, all = 0.0;
-    for (const Slope& s : slopes_) {
-      const double square = double(s.x * s.x + s.y * s.y);
-      if (square == 0) continue;
+    for_each([&](int, int, float by_x, float by_y) {
+      const auto square = double(by_x * by_x + by_y * by_y);
       const double weight = std::min(1.0, double(most_ * most_) / square);
-      plus += weight * double(s.x * s.x - s.y * s.y);
-      cross += weight * double(2 * s.x * s.y);
+      plus += weight * double(by_x * by_x - by_y * by_y);
+      cross += weight * double(2 * by_x * by_y);
       all += weight * square;
-    }
-    if (!(all > 0) || std::hypot(plus, cross) < least_coherence * all) return std::nullopt;
+    });
+    if (!(all > 0) || !(std::hypot(plus, cross) >= least_coherence * all)) return std::nullopt;
     return 0.5 * std::atan2(-cross, -plus);
   }
 
-  /// Slopes along a direction.
-  std::vector<float> along(double direction_rad) const {
+  /// Slopes along a direction; 0 where they are of noise.
+  SlopeImage along(double direction_rad) const {
     const auto c = float(std::cos(direction_rad)), s = float(std::sin(direction_rad));
-    std::vector<float> out;
-    out.reserve(slopes_.size());
-    for (const Slope& slope : slopes_)
-      out.push_back(std::clamp(c * slope.x + s * slope.y, -most_, most_));
+    SlopeImage out(snr_.columns, snr_.rows);
+    for_each([&](int x, int y, float by_x, float by_y) {
+      out.at(x, y) = std::clamp(c * by_x + s * by_y, -most_, most_);
+    });
     return out;
   }
 
  private:
-  std::size_t index(int x, int y) const {
-    return std::size_t(y) * std::size_t(columns_) + std::size_t(x);
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (int y = 1; y + 1 < snr_.rows; ++y)
+      for (int x = 1; x + 1 < snr_.columns; ++x) {
+        const float by_x = 0.5F * (snr_.at(x + 1, y) - snr_.at(x - 1, y));
+        const float by_y = 0.5F * (snr_.at(x, y + 1) - snr_.at(x, y - 1));
+        if (by_x * by_x + by_y * by_y > least_ * least_) visit(x, y, by_x, by_y);
+      }
   }
 
-  int columns_, rows_;
-  float most_;
-  std::vector<Slope> slopes_;
+  PointSnrImage snr_;
+  float least_, most_;
 };
 
 struct PixelStep {
@@ -84,16 +81,19 @@ struct PixelStep {
 /// Beginnings of light along a direction, of which the ends are searched.
 class Beginnings {
  public:
-  Beginnings(const Scene& scene, std::vector<float> slopes)
-      : columns_(scene.counts.columns), rows_(scene.counts.rows), slopes_(std::move(slopes)) {
-    const auto least = float(3.0 / (std::sqrt(2.0) * scene.sigma_px));
-    std::vector<Beginning> all;
-    for (int y = 0; y < rows_; ++y)
-      for (int x = 0; x < columns_; ++x)
-        if (at(x, y) > least) all.push_back({x, y, at(x, y)});
-    const std::size_t every = all.size() / most_beginnings + 1;
-    for (std::size_t i = 0; i < all.size(); i += every) beginnings_.push_back(all[i]);
-    for (const Beginning& e : beginnings_) square_ += double(e.slope * e.slope);
+  Beginnings(SlopeImage slopes, double sigma_px) : slopes_(std::move(slopes)) {
+    const float least = least_slope(sigma_px);
+    const auto all = std::size_t(
+        std::ranges::count_if(slopes_.pixels, [&](float slope) { return slope > least; }));
+    const std::size_t every = all / most_beginnings + 1;
+    std::size_t seen = 0;
+    for (int y = 0; y < slopes_.rows; ++y)
+      for (int x = 0; x < slopes_.columns; ++x) {
+        const float slope = slopes_.at(x, y);
+        if (!(slope > least) || seen++ % every != 0) continue;
+        beginnings_.push_back({x, y, slope});
+        square_ += double(slope * slope);
+      }
   }
 
   /// Share of the beginnings, by their slopes, of which the end is at a distance.
@@ -104,28 +104,32 @@ class Beginnings {
     double sum = 0.0;
     for (const Beginning& e : beginnings_) {
       const int x = e.x + ix, y = e.y + iy;
-      if (x < 0 || y < 0 || x + 1 >= columns_ || y + 1 >= rows_) continue;
-      const float there = (1 - fy) * ((1 - fx) * at(x, y) + fx * at(x + 1, y)) +
-                          fy * ((1 - fx) * at(x, y + 1) + fx * at(x + 1, y + 1));
+      if (x < 0 || y < 0 || x + 1 >= slopes_.columns || y + 1 >= slopes_.rows) continue;
+      const auto in_row = [&](int row) {
+        return (1 - fx) * slopes_.at(x, row) + fx * slopes_.at(x + 1, row);
+      };
+      const float there = (1 - fy) * in_row(y) + fy * in_row(y + 1);
       sum -= double(e.slope * there);
     }
     return sum / square_;
   }
 
-  /// The same at many distances of whole pixels, none of which is longer than `reach_px`.
+  /// These shares at many distances of whole pixels, none of which is longer than `reach_px`.
   std::vector<double> shares_at(const std::vector<PixelStep>& distances, int reach_px) const {
     std::vector<float> sums(distances.size(), 0.0F);
     std::vector<std::ptrdiff_t> steps;
-    for (const PixelStep& d : distances) steps.push_back(std::ptrdiff_t(d.y) * columns_ + d.x);
+    for (const PixelStep& d : distances)
+      steps.push_back(std::ptrdiff_t(d.y) * slopes_.columns + d.x);
     for (const Beginning& e : beginnings_) {
-      const float* here = &slopes_[index(e.x, e.y)];
-      if (std::min({e.x, e.y, columns_ - 1 - e.x, rows_ - 1 - e.y}) >= reach_px) {
+      const float* here = &slopes_.at(e.x, e.y);
+      if (std::min({e.x, e.y, slopes_.columns - 1 - e.x, slopes_.rows - 1 - e.y}) >= reach_px) {
         for (std::size_t k = 0; k < steps.size(); ++k) sums[k] -= e.slope * here[steps[k]];
         continue;
       }
       for (std::size_t k = 0; k < steps.size(); ++k) {
         const int x = e.x + distances[k].x, y = e.y + distances[k].y;
-        if (x >= 0 && y >= 0 && x < columns_ && y < rows_) sums[k] -= e.slope * here[steps[k]];
+        if (x >= 0 && y >= 0 && x < slopes_.columns && y < slopes_.rows)
+          sums[k] -= e.slope * here[steps[k]];
       }
     }
     std::vector<double> shares;
@@ -138,13 +142,8 @@ class Beginnings {
     int x, y;
     float slope;
   };
-  std::size_t index(int x, int y) const {
-    return std::size_t(y) * std::size_t(columns_) + std::size_t(x);
-  }
-  float at(int x, int y) const { return slopes_[index(x, y)]; }
 
-  int columns_, rows_;
-  std::vector<float> slopes_;
+  SlopeImage slopes_;
   std::vector<Beginning> beginnings_;
   double square_ = 0.0;
 };
@@ -188,15 +187,17 @@ std::vector<PixelStep> distances_along(double direction_rad, double from_px, dou
 }  // namespace
 
 std::optional<PixelPosition> common_trail(const Scene& scene) {
-  const Slopes slopes(scene);
-  const auto direction = slopes.direction_rad();
-  if (!direction) return std::nullopt;
-  const Beginnings beginnings(scene, slopes.along(*direction));
   const double most_px =
       std::min(longest_common_px, 0.6 * std::min(scene.counts.columns, scene.counts.rows));
-  const auto distances = distances_along(
-      *direction, shortest_common_sigmas * std::sqrt(2.0) * scene.sigma_px, most_px);
-  if (distances.empty()) return std::nullopt;
+  const double least_px = shortest_common_sigmas * std::sqrt(2.0) * scene.sigma_px;
+  if (!(least_px < most_px)) return std::nullopt;
+  std::optional<Slopes> slopes(scene);
+  const auto direction = slopes->direction_rad();
+  if (!direction) return std::nullopt;
+  SlopeImage along = slopes->along(*direction);
+  slopes.reset();
+  const Beginnings beginnings(std::move(along), scene.sigma_px);
+  const auto distances = distances_along(*direction, least_px, most_px);
   std::vector<double> shares = beginnings.shares_at(distances, int(1.1 * most_px) + 4);
   const auto best = std::ranges::max_element(shares);
   const double most = *best;

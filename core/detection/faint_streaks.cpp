@@ -50,20 +50,11 @@ bool is_part_of(const Trail& part, const Trail& whole, double margin_px) {
 }
 
 void hide(FilteredFrame& frame, TurnedFrame& turned, const Trail& t, double margin_px) {
-  const double c = std::abs(std::cos(t.angle_rad)), s = std::abs(std::sin(t.angle_rad));
-  const double bend = std::abs(t.sagitta_px) + margin_px + 1;
-  const auto within = [](double place, int pixels) {
-    return int(std::clamp(place, 0.0, double(pixels - 1)));
-  };
-  const double reach_x = t.length_px / 2 * c + bend, reach_y = t.length_px / 2 * s + bend;
-  const int x1 = within(t.x_px + reach_x, frame.columns), y1 = within(t.y_px + reach_y, frame.rows);
   const Around around(t, margin_px);
-  const int x0 = within(t.x_px - reach_x, frame.columns);
-  for (int y = within(t.y_px - reach_y, frame.rows); y <= y1; ++y) {
-    const auto [first, last] = around.columns(y);
-    for (int x = std::max(x0, first); x <= std::min(x1, last); ++x)
+  around.for_rows(frame.columns, frame.rows, [&](int y, int begin, int end) {
+    for (int x = begin; x < end; ++x)
       if (around.has(x, y)) frame.hide(y, x, x), turned.hide(x, y);
-  }
+  });
 }
 
 /// The fit of a streak of `snr`. What it is too faint to show is not fitted.

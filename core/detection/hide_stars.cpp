@@ -43,17 +43,6 @@ void mark(const StarImage& image, float least, BitMask& lit) {
                               std::size_t(std::min(word, image.x1 - x + 1)), least));
 }
 
-/// Of stars anywhere in the frame.
-double longest_trail_px(const Scene& scene) {
-  double longest = 0.0;
-  for (const double x : {0.0, 0.5, 1.0})
-    for (const double y : {0.0, 0.5, 1.0})
-      longest = std::max(
-          longest,
-          scene.star_trail(x * (scene.counts.columns - 1), y * (scene.counts.rows - 1)).length_px);
-  return longest;
-}
-
 }  // namespace
 
 std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
@@ -64,7 +53,7 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   const double least_e =
       0.5 * subtracted_snr * scene.background.median_sigma_dn() * scene.gain_e_per_dn / unit;
   if (!(least_e > 0)) return std::nullopt;
-  const double longest_px = longest_trail_px(scene);
+  const double longest_px = scene.stars.longest_trail_px();
   if (longest_px > most_trail_px) return std::nullopt;
   const auto expected =
       sky.stars_in(header, frame.columns, frame.rows, least_e, spare_px + 0.5 * longest_px);

@@ -161,28 +161,19 @@ std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
 }
 
 std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px) {
-  const double c = std::abs(std::cos(trail.angle_rad)), s = std::abs(std::sin(trail.angle_rad));
-  const double reach_x = trail.length_px / 2 * c + margin_px + std::abs(trail.sagitta_px);
-  const double reach_y = trail.length_px / 2 * s + margin_px + std::abs(trail.sagitta_px);
-  const int x0 = std::max(0, int(std::floor(trail.x_px - reach_x)));
-  const int x1 = std::min(scene.counts.columns - 1, int(std::ceil(trail.x_px + reach_x)));
-  const int y0 = std::max(0, int(std::floor(trail.y_px - reach_y)));
-  const int y1 = std::min(scene.counts.rows - 1, int(std::ceil(trail.y_px + reach_y)));
   const Around around(trail, margin_px);
   std::vector<FitPixel> out;
-  if (x1 < x0) return out;
-  std::vector<float> level(std::size_t(x1 - x0 + 1)), sigma(level.size());
-  for (int y = y0; y <= y1; ++y) {
-    const auto [first, last] = around.columns(y);
-    const int begin = std::max(x0, first), end = std::min(x1, last) + 1;
-    if (end <= begin) continue;
+  std::vector<float> level, sigma;
+  around.for_rows(scene.counts.columns, scene.counts.rows, [&](int y, int begin, int end) {
+    const std::size_t count = std::size_t(end - begin);
+    if (level.size() < count) level.resize(count), sigma.resize(count);
     scene.background.level_row(y, begin, end, level.data());
     scene.background.sigma_row(y, begin, end, sigma.data());
     for (int x = begin; x < end; ++x)
       if (around.has(x, y) && scene.is_usable(x, y))
         out.push_back(
             scene.pixel(x, y, level[std::size_t(x - begin)], sigma[std::size_t(x - begin)]));
-  }
+  });
   return out;
 }
 
@@ -222,7 +213,8 @@ Around::Around(const Trail& trail, double margin_px)
       cos_(std::cos(trail.angle_rad)),
       sin_(std::sin(trail.angle_rad)) {}
 
-std::pair<int, int> Around::columns(int y) const {
+/// The first and the last column of a row outside of which nothing is.
+std::pair<int, int> Around::columns_near(int y) const {
   constexpr double most = 1e9, least_sine = 1e-3;
   if (std::abs(sin_) < least_sine) return {int(-most), int(most)};
   const double reach_px = margin_px_ + std::abs(trail_.sagitta_px) + 1;

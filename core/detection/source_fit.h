@@ -23,10 +23,30 @@ class Around {
     return off * off + beyond * beyond <= margin_px_ * margin_px_;
   }
 
-  /// The first and the last column of a row outside of which nothing is.
-  std::pair<int, int> columns(int y) const;
+  /// Calls visit(y, begin, end) for the rows of a frame within the distance, with the columns from
+  /// `begin` to before `end` outside of which nothing is.
+  template <class Visit>
+  void for_rows(int columns, int rows, const Visit& visit) const {
+    const double margin = margin_px_ + std::abs(trail_.sagitta_px), half = trail_.length_px / 2;
+    const double reach_x = half * std::abs(cos_) + margin, reach_y = half * std::abs(sin_) + margin;
+    const auto first = [](double px, int count) {
+      return int(std::clamp(std::floor(px), 0.0, double(count)));
+    };
+    const auto last = [](double px, int count) {
+      return int(std::clamp(std::ceil(px), -1.0, double(count - 1)));
+    };
+    const int x0 = first(trail_.x_px - reach_x, columns), x1 = last(trail_.x_px + reach_x, columns);
+    const int y1 = last(trail_.y_px + reach_y, rows);
+    for (int y = first(trail_.y_px - reach_y, rows); y <= y1; ++y) {
+      const auto [left, right] = columns_near(y);
+      const int begin = std::max(x0, left), end = std::min(x1, right) + 1;
+      if (begin < end) visit(y, begin, end);
+    }
+  }
 
  private:
+  std::pair<int, int> columns_near(int y) const;
+
   Trail trail_;
   double margin_px_, cos_, sin_;
 };

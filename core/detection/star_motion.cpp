@@ -1,5 +1,8 @@
 #include "core/detection/star_motion.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace dmise {
 
 StarMotion::StarMotion(const FrameHeader& header, int columns, int rows)
@@ -33,7 +36,22 @@ PixelPosition StarMotion::trail_at(PixelPosition at) const {
   const auto start = pixel(start_from_middle_ * *middle);
   const auto end = pixel(end_from_middle_ * *middle);
   if (!start || !end) return {};
-  return *end - *start;
+  const PixelPosition trail = *end - *start;
+  return std::isfinite(trail.x_px + trail.y_px) ? trail : PixelPosition{};
+}
+
+std::array<PixelPosition, 9> StarMotion::trails_over_frame() const {
+  std::array<PixelPosition, 9> trails;
+  for (std::size_t i = 0; i < trails.size(); ++i)
+    trails[i] = trail_at({double(i % 3) * centre_.x_px, double(i / 3) * centre_.y_px});
+  return trails;
+}
+
+double StarMotion::longest_trail_px() const {
+  double longest = 0.0;
+  for (const PixelPosition& t : trails_over_frame())
+    longest = std::max(longest, std::hypot(t.x_px, t.y_px));
+  return longest;
 }
 
 }  // namespace dmise

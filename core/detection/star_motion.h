@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 
 #include "core/base/pixel.h"
@@ -16,6 +17,11 @@ class StarMotion {
   /// Displacement [px] from start to end of the exposure of the star at `pixel` in its middle; zero
   /// where the projection has no image.
   PixelPosition trail_at(PixelPosition pixel) const;
+
+  /// Trails in the frame's middle, at its corners and in the middles of its edges.
+  std::array<PixelPosition, 9> trails_over_frame() const;
+  /// Length of the longest of these.
+  double longest_trail_px() const;
 
  private:
   std::optional<Vec<CameraFrame>> direction(PixelPosition pixel) const;

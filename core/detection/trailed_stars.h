@@ -18,9 +18,9 @@ struct TrailedStar {
 bool stars_trail(const Scene& scene);
 
 /// Finds stars without a catalogue, where they trail: light that is even along the common trail and
-/// ends with it. What is brighter in a part of a trail, as an object before it, is left. Middles
-/// may be beside the frame. By falling light as found. Returns none if the search exceeds its
-/// bound, which is a number of reads of pixels and does not depend on the machine.
+/// ends with it. Light that stands out of a part of a trail, as of an object before it, is left.
+/// Middles may be beside the frame. Returns none if the search exceeds its bound, which is a number
+/// of reads of pixels and does not depend on the machine.
 std::vector<TrailedStar> find_trailed_stars(const Scene& scene);
 
 /// A frame less its stars.

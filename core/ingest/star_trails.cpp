@@ -93,22 +93,32 @@ MedianOf median_and_error(const std::vector<double>& values) {
   return {middle, 1.25 * sigma_of_median * median_of(off) / std::sqrt(double(values.size()))};
 }
 
-/// Measured elongation over that of a mount at rest: 1 for it, up to 1.6 for long trails, and 0 for
-/// stars that do not trail. The error is large where trails are too short to tell. `turned`: at 45
-/// degrees to such trails instead, where a mount at rest has none.
-MedianOf elongation_at_rest(const FrameHeader& at_rest, const CountImage& counts,
-                            const StarShape& shape, bool turned) {
+/// Measured elongation over that of a mount at rest.
+struct Elongation {
+  MedianOf along;  // 1 for such a mount, up to 1.6 for long trails, 0 for stars that do not trail
+  MedianOf at_45_deg;  // to its trails, where it has none: 0
+};
+
+/// Errors are large where trails are too short to tell.
+Elongation elongation_at_rest(const FrameHeader& at_rest, const CountImage& counts,
+                              const StarShape& shape) {
   const StarMotion motion(at_rest, counts.columns, counts.rows);
-  std::vector<double> ratios;
+  std::vector<double> along, at_45_deg;
   for (const StarEllipse& e : shape.ellipses) {
     const PixelPosition d = motion.trail_at({e.x_px, e.y_px});
     const double plus = (d.x_px * d.x_px - d.y_px * d.y_px) / 12, cross = d.x_px * d.y_px / 6;
     const double square = plus * plus + cross * cross;
-    const double along = turned ? e.cross * plus - e.plus * cross : e.plus * plus + e.cross * cross;
-    if (square > 1e-6) ratios.push_back(along / square);
+    if (!(square > 1e-6)) continue;
+    along.push_back((e.plus * plus + e.cross * cross) / square);
+    at_45_deg.push_back((e.cross * plus - e.plus * cross) / square);
   }
-  if (ratios.size() < 5) return {0.0, 1e9};
-  return median_and_error(ratios);
+  if (along.size() < 5) return {{0.0, 1e9}, {0.0, 1e9}};
+  return {median_and_error(along), median_and_error(at_45_deg)};
+}
+
+bool is_of_mount_at_rest(const Elongation& e) {
+  return e.along.error < 0.15 && e.along.value > 0.6 && e.along.value < 1.8 &&
+         std::abs(e.at_45_deg.value) < 0.4 + 3 * e.at_45_deg.error;
 }
 
 /// Whether most images are long in one direction, also blends of trails.
@@ -164,10 +174,7 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
   if (may_be_at_rest(header)) {
     FrameHeader at_rest = header;
     set_at_rest(at_rest);
-    const MedianOf ratio = elongation_at_rest(at_rest, counts, shape, false);
-    const MedianOf turned = elongation_at_rest(at_rest, counts, shape, true);
-    if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8 &&
-        std::abs(turned.value) < 0.4 + 3 * turned.error) {
+    if (is_of_mount_at_rest(elongation_at_rest(at_rest, counts, shape))) {
       header = std::move(at_rest);
       const auto trail = trail_in_the_middle(header, counts.columns, counts.rows);
       cards.assumed("mount: at rest: " + trail_text(trail) + ", as the Earth turns");

@@ -7,12 +7,14 @@
 
 #include "core/detection/components.h"
 #include "tests/support/simulated_frame.h"
+#include "tests/support/simulated_scene.h"
 
 namespace dmise {
 namespace {
 
 using simulated::camera_header;
 using simulated::SimulatedFrame;
+using simulated::SimulatedScene;
 
 constexpr int size = 400;
 constexpr double sky_e = 1500.0, flux_e = 8000.0;  // of SNR 70
@@ -36,16 +38,11 @@ struct Shown {
       if (i % 2 == 0)
         add({{star.place.x_px + 3, star.place.y_px}, 0.3 * flux_e}, normal, random, frame);
     }
-    const CountImage counts = frame.expose();
-    Threads one;
-    const Background background(counts, 64, one);
-    const StarMotion motion(header, size, size);
-    const Scene scene{counts,  background,
-                      motion,  header.gain_e_per_dn,
-                      60000.0, sigma_with_pixel(header.psf_fwhm_px),
-                      false,   PsfField::gaussian(header.psf_fwhm_px)};
+    SimulatedScene exposed(header, frame.expose());
+    const Scene& scene = exposed.scene;
     FilteredFrame filtered(size, size, scene.sigma_px);
-    find_components(counts, background, scene.sigma_px, 3.0, 5.0, one, &filtered);
+    find_components(scene.counts, scene.background, scene.sigma_px, 3.0, 5.0, exposed.one,
+                    &filtered);
     stars = shown_stars(scene, StarAgreement(scene, filtered, expected), expected);
   }
   void add(const ExpectedStar& star, std::normal_distribution<double>& normal,

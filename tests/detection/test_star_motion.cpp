@@ -28,6 +28,18 @@ TEST(StarMotion, TrackedStarsStandStill) {
   EXPECT_NEAR(trail_px(StarMotion(header, 3326, 2504), 100, 200), 0.0, 1e-9);
 }
 
+// On the equator h = tan(hour angle) of a place to the west and d = tan(dec) sqrt(1 + h^2) of one
+// to the north are a gnomonic frame's coordinates in focal lengths. Of a mount at rest h grows by
+// 1 + h^2 and d by d h, the most at the corners.
+TEST(StarMotion, LongestTrailsOfAWideFrameAreAtItsCorners) {
+  const StarMotion motion(simulated::camera_header(3326, 2504, 1663.0, 0.0, 20, true), 3326, 2504);
+  const double h = 1251.5 / 1663, d = 1662.5 / 1663;
+  const double middle_px = 1663 * 7.292115e-5 * 20;
+  EXPECT_NEAR(motion.longest_trail_px(), middle_px * std::hypot(1 + h * h, d * h), 1e-3);
+  const auto trails = motion.trails_over_frame();
+  EXPECT_NEAR(std::hypot(trails[4].x_px, trails[4].y_px), middle_px, 1e-3);
+}
+
 // In every projection a small rotation about the boresight turns the image about its centre.
 TEST(StarMotion, RollTurnsTheImageInEveryProjection) {
   auto header = simulated::camera_header(1001, 1001, 600.0, 0, 20, false);

@@ -3,18 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <vector>
 
-#include "core/detection/common_trail.h"
 #include "core/detection/detect.h"
 #include "tests/support/simulated_frame.h"
+#include "tests/support/simulated_scene.h"
 
 namespace dmise {
 namespace {
 
 using simulated::camera_header;
 using simulated::SimulatedFrame;
+using simulated::SimulatedScene;
 
 constexpr int size = 512;
 constexpr double sky_e = 1500.0;  // noise of 39.8 e- a pixel
@@ -26,8 +26,8 @@ struct Trails {
   std::vector<PixelPosition> stars, points;
   CountImage counts;
 
-  explicit Trails(int star_count, bool at_rest = true, int point_count = 0)
-      : header(camera_header(size, size, focal_px, 0.0, exposure_s, at_rest)) {
+  explicit Trails(int star_count, int point_count = 0)
+      : header(camera_header(size, size, focal_px, 0.0, exposure_s, true)) {
     SimulatedFrame frame(header, size, size, sky_e, 5);
     for (int i = 0; i < star_count; ++i) {
       const PixelPosition at{frame.uniform(0, size), frame.uniform(0, size)};
@@ -42,16 +42,8 @@ struct Trails {
     counts = frame.expose();
   }
 
-  template <class Question>
-  auto ask(const Question& question) const {
-    Threads one;
-    const Background background(counts, 64, one);
-    const StarMotion motion(header, size, size);
-    const Scene scene{counts,  background,
-                      motion,  header.gain_e_per_dn,
-                      63000.0, sigma_with_pixel(header.psf_fwhm_px),
-                      false,   PsfField::gaussian(header.psf_fwhm_px)};
-    return question(scene);
+  std::vector<TrailedStar> found() const {
+    return find_trailed_stars(SimulatedScene(header, counts).scene);
   }
 };
 
@@ -61,7 +53,7 @@ bool is_near(const PixelPosition& a, const PixelPosition& b, double px) {
 
 TEST(TrailedStars, AreFoundWithoutACatalogue) {
   const Trails trails(60);
-  const auto found = trails.ask([](const Scene& scene) { return find_trailed_stars(scene); });
+  const auto found = trails.found();
   int seen = 0;
   for (const PixelPosition& star : trails.stars)
     for (const TrailedStar& f : found)
@@ -74,7 +66,7 @@ TEST(TrailedStars, AreFoundWithoutACatalogue) {
 }
 
 TEST(TrailedStars, LeavePointsToBeFound) {
-  Trails trails(60, true, 25);
+  Trails trails(60, 25);
   trails.header.mount = "unknown";
   Threads one;
   const DetectionResult result = detect(trails.counts, trails.header, nullptr, one);
@@ -91,23 +83,7 @@ TEST(TrailedStars, LeavePointsToBeFound) {
 // The bound of the search is in reads of pixels: it does not depend on the machine.
 TEST(TrailedStars, AreLeftWhereTheyAreTooManyToFindInBoundedTime) {
   const Trails trails(6000);
-  EXPECT_TRUE(trails.ask([](const Scene& scene) { return find_trailed_stars(scene); }).empty());
-}
-
-TEST(CommonTrail, IsMeasuredWhereTrailsOverlap) {
-  const Trails trails(200);
-  const auto common = trails.ask([](const Scene& scene) { return common_trail(scene); });
-  ASSERT_TRUE(common);
-  const PixelPosition true_px =
-      StarMotion(trails.header, size, size).trail_at({size / 2.0, size / 2.0});
-  const double sign = common->y_px * true_px.y_px + common->x_px * true_px.x_px < 0 ? -1 : 1;
-  EXPECT_NEAR(sign * common->x_px, true_px.x_px, 0.4);
-  EXPECT_NEAR(sign * common->y_px, true_px.y_px, 0.4);
-}
-
-TEST(CommonTrail, IsNotThereWhereStarsArePoints) {
-  const Trails points(200, false);
-  EXPECT_FALSE(points.ask([](const Scene& scene) { return common_trail(scene); }));
+  EXPECT_TRUE(trails.found().empty());
 }
 
 }  // namespace

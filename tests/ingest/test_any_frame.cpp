@@ -114,6 +114,8 @@ TEST(AnyFrame, MirroredFramesOfAMountAtRestKeepTheirStars) {
     EXPECT_NEAR(found[i].y_px, rows - 1 - drawn[i].y_px, 3 * std::sqrt(found[i].covariance_px2[2]));
   }
   ASSERT_FALSE(expected.empty());
+  EXPECT_NEAR(found[0].x_px, expected[0].x_px, 0.2);
+  EXPECT_NEAR(found[0].y_px, rows - 1 - expected[0].y_px, 0.2);
   EXPECT_NEAR(found[0].dec_rad, expected[0].dec_rad, 1 / focal_px);
 }
 
