@@ -578,14 +578,17 @@ class Package(unittest.TestCase):
             except ImportError as missing:
                 print(missing)
         """
-        done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=True,
-                              env={**os.environ, "PYTHONPATH": PACKAGE})
-        numbers, missing = done.stdout.splitlines()
-        seconds, megabytes = map(float, numbers.split())
-        self.assertIn("dmise.serve needs pyzmq", missing)
+        measured = []
+        for _ in range(3):
+            done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=True,
+                                  env={**os.environ, "PYTHONPATH": PACKAGE})
+            numbers, missing = done.stdout.splitlines()
+            self.assertIn("dmise.serve needs pyzmq", missing)
+            measured.append([float(number) for number in numbers.split()])
         if not SANITIZED:
-            self.assertLess(megabytes, 60 + 40)  # with numpy and the engine
-            self.assertLess(seconds, 2.0)
+            seconds, megabytes = map(min, zip(*measured))
+            self.assertLess(seconds, 0.3)
+            self.assertLess(megabytes, 60.0)
 
     def test_the_example_of_the_document(self):
         text = (ROOT / "docs/python.md").read_text()
