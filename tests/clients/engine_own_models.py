@@ -542,6 +542,12 @@ class Faults(Case):
             self.assertRegex(str(caught.exception), "^" + words.replace("PATH", re.escape(str(path))) + "$")
             self.assertNotIn("\n", str(caught.exception))
         self.assertEqual(caught.exception.line, 3)
+        for given in ([actor], ["gnc"], actor, 5):
+            with self.assertRaisesRegex(TypeError, "^nodes: must be a mapping of names to models, got"):
+                dmise.Simulation(self.write(good), nodes=given)
+        for given in ({5: actor}, {None: actor}):
+            with self.assertRaisesRegex(dmise.ScenarioError, "nodes: no node has this name, got (5|None)|is not given"):
+                dmise.Simulation(self.write(good), nodes=given)
         with self.assertRaises(dmise.ScenarioError):
             dmise.engine.core.Simulation.drawn_of_file(str(self.write(good)), 1)  # of dmise.inject
 

@@ -17,6 +17,7 @@ MARKS: dict[str, type[Served]] = {"actor": Actor, "detector": Detector}
 def checked_models(own_nodes: list[tuple[str, str, str, list[str]]], given: Mapping[str, Any]) -> dict[str, Served]:
     """The model of each node: name, place in the scenario, mark and objects. Raises ScenarioError for one that is not its model."""
     models: dict[str, Served] = {}
+    given = {str(name): model for name, model in given.items()}
     for name, where, mark, objects in own_nodes:
         model = given[name]
         if not isinstance(model, MARKS[mark]):

@@ -52,7 +52,9 @@ class Simulation:
     def __init__(self, scenario: str | os.PathLike[str] | Mapping[str, Any], seed: int | None = None,
                  nodes: Mapping[str, Actor | Detector] | None = None) -> None:
         self._text = text_of(scenario)
-        names = list(nodes or ())
+        if nodes is not None and not isinstance(nodes, Mapping):
+            raise TypeError(f"nodes: must be a mapping of names to models, got {type(nodes).__name__}")
+        names = [str(name) for name in nodes or ()]
         if self._text is None:
             self._path = os.fspath(scenario)  # type: ignore[arg-type]
             self._core = core.Simulation.of_file(self._path, seed_of(seed), names)
