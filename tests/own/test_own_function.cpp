@@ -14,7 +14,7 @@ namespace {
 
 /// Starts a model that `answer` speaks for, after it has said that it is ready.
 std::unique_ptr<OwnModel> started(
-    std::function<v1::OwnNodeAnswer(const v1::OwnNodeRequest&)> answer) {
+    const std::function<v1::OwnNodeAnswer(const v1::OwnNodeRequest&)>& answer) {
   static const Scenario scenario;
   static const OwnNode node{.name = "finder"};
   const OwnNodeSettings settings;
