@@ -11,6 +11,7 @@
 #include "nodes/own/input_journal.h"
 #include "nodes/own/own_actor.h"
 #include "nodes/own/own_detector.h"
+#include "nodes/own/own_program.h"
 #include "nodes/own/own_sensor.h"
 #include "nodes/runtime/process/event.h"
 #include "orbit-node/orbit_actor.h"
@@ -40,7 +41,8 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
   if (const auto found = actors.find(name); found != actors.end()) return std::move(found->second);
   return std::make_unique<OwnActor>(
       parts.scenario, node, make_clock(parts.scenario),
-      OwnNodeSettings{.log_path = parts.directory + "/logs/" + name + ".log",
+      OwnNodeSettings{.start = start_program,
+                      .log_path = parts.directory + "/logs/" + name + ".log",
                       .journal_path = input_journal_path(parts.directory, name),
                       .error_prefix = name + ": ",
                       .note = parts.note,
@@ -48,8 +50,10 @@ std::unique_ptr<Participant> make_own_node(const std::string& name, NodeParts& p
 }
 
 std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
-  const OwnNodeSettings settings{
-      .error_prefix = node + ": ", .note = parts.note, .stop = &stop_signal()};
+  const OwnNodeSettings settings{.start = start_program,
+                                 .error_prefix = node + ": ",
+                                 .note = parts.note,
+                                 .stop = &stop_signal()};
   SourceFinder finder = std::move(parts.replayed.finders[node]);
   if (!finder) finder = own_finder(parts.scenario, node, parts.directory, settings);
   ExposureObserver observer = std::move(parts.replayed.observers[node]);
@@ -65,7 +69,10 @@ std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts
 
 std::unique_ptr<Participant> make_fusion_node(const std::string& name, NodeParts& parts) {
   return make_fusion(parts.scenario, make_clock(parts.scenario), parts.directory,
-                     {.error_prefix = name + ": ", .note = parts.note, .stop = &stop_signal()},
+                     {.start = start_program,
+                      .error_prefix = name + ": ",
+                      .note = parts.note,
+                      .stop = &stop_signal()},
                      std::move(parts.replayed.tracker));
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,8 @@
 #include "clients/engine/interruptible.h"
 #include "clients/engine/like_frame.h"
 #include "core/base/json.h"
+#include "core/base/nearest_name.h"
+#include "core/base/printable.h"
 #include "core/config/distribution.h"
 #include "core/config/make_clock.h"
 #include "core/config/own_node_config.h"
@@ -130,38 +133,103 @@ class Stream {
   Stream(StreamSource source, StreamOptions options, std::shared_ptr<const Clock> clock)
       : stream_(std::move(source), std::move(options)), clock_(std::move(clock)) {}
 
-  /// Null after the last frame.
-  std::unique_ptr<MadeFrame> next() {
+  /// Null after the last frame. `models` is called in this thread with the name of a node, that of
+  /// the sensor for which it detects, or "", and the frames of a request, and returns those of the
+  /// answer. What it raises ends the stream.
+  std::unique_ptr<MadeFrame> next(nb::handle models) {
     stream_.ask();
-    wait_interruptibly([this](auto time) { return stream_.wait(time); },
-                       [this] { stream_.stop(); });
+    while (true) {
+      wait_interruptibly([this](auto time) { return stream_.wait(time); },
+                         [this] { stream_.stop(); });
+      const auto request = stream_.request();
+      if (!request) break;
+      answer(*request, models);
+    }
     auto made = of_scenario([this] { return stream_.take(); });
     return made ? std::make_unique<MadeFrame>(std::move(made), clock_) : nullptr;
   }
   void stop() { stream_.stop(); }
+  std::vector<std::string> take_notes() { return stream_.take_notes(); }
 
  private:
+  void answer(const ModelRequest& request, nb::handle models) {
+    try {
+      nb::list asked;
+      for (const std::string& frame : request.frames)
+        asked.append(nb::bytes(frame.data(), frame.size()));
+      std::vector<std::string> frames;
+      for (const nb::handle each : models(request.node, request.sensor, asked)) {
+        const auto frame = nb::cast<nb::bytes>(each);
+        frames.emplace_back(frame.c_str(), frame.size());
+      }
+      stream_.answer(std::move(frames));
+    } catch (...) {
+      stream_.stop();
+      throw;
+    }
+  }
+
   FrameStream stream_;
   std::shared_ptr<const Clock> clock_;
 };
 
+using Names = std::set<std::string>;
+
+/// Throws `ConfigError` for a node of the scenario that cannot be one of `models`, the functions of
+/// this process, and for one of these that is no node of the scenario.
+void check_own_nodes(const Scenario& scenario, const Names& models) {
+  std::vector<std::string> names;
+  for (const OwnNode& node : scenario.own_nodes) {
+    names.push_back(node.name);
+    const auto refuse = [&](const std::string& why) {
+      throw ConfigError(node.where + ": " + why + "; dmise run and dmise launch can");
+    };
+    if (node.role == OwnNodeRole::sensor || node.role == OwnNodeRole::tracker)
+      refuse("the engine in Python runs no sensors and trackers of one's own");
+    if (!node.consumes.empty()) refuse("the engine in Python lets no model hear topics");
+    if (!node.in_process)
+      throw ConfigError(node.where + ": its model is not given: dmise.Simulation(.., nodes={\"" +
+                        node.name + "\": ..})");
+  }
+  for (const std::string& name : models)
+    if (std::ranges::count(names, name) == 0)
+      throw ConfigError(scenario.path + ": nodes: no node has this name" +
+                        did_you_mean(name, names) + ", got " + printable(name));
+}
+
+/// The names of the objects that a node moves or turns, in the scenario's order.
+std::vector<std::string> objects_of(const Scenario& scenario, const OwnNode& node) {
+  std::vector<std::string> names;
+  for (const OwnObject& object : scenario.own_objects) {
+    const NodeMotion* motion = motion_by_node(object);
+    const NodeAttitude* attitude = attitude_by_node(object);
+    if ((motion && motion->node == node.name) || (attitude && attitude->node == node.name))
+      names.push_back(object.name);
+  }
+  return names;
+}
+
 class Simulation {
  public:
-  explicit Simulation(Scenario scenario) {
-    refuse_own_nodes(scenario.own_nodes, "the engine in Python");
+  explicit Simulation(Scenario scenario, const Names& models = {}) {
+    check_own_nodes(scenario, models);
     scenario.network.publish_states = false;  // as of a run in one process
     scenario_ = std::make_shared<const Scenario>(std::move(scenario));
     clock_ = std::make_shared<const Clock>(make_clock(*scenario_));
   }
-  static std::unique_ptr<Simulation> of(const YamlValue& root, std::optional<std::uint64_t> seed) {
+  static std::unique_ptr<Simulation> of(const YamlValue& root, std::optional<std::uint64_t> seed,
+                                        const std::vector<std::string>& nodes) {
     refuse_distributions(root, "dmise dataset draws a value for each seed");
-    Scenario scenario = read_scenario(root);
+    const Names models(nodes.begin(), nodes.end());
+    Scenario scenario = read_scenario(root, models);
     if (seed) scenario.seed = *seed;
-    return std::make_unique<Simulation>(std::move(scenario));
+    return std::make_unique<Simulation>(std::move(scenario), models);
   }
   /// With values drawn for the seed.
   static std::unique_ptr<Simulation> drawn(const ScenarioDraws& draws, std::uint64_t seed) {
-    return std::make_unique<Simulation>(draws.draw(seed).scenario);
+    const DrawnScenario drawn = draws.draw(seed);
+    refuse_own_nodes(drawn.scenario.own_nodes, "an injection");
+    return std::make_unique<Simulation>(drawn.scenario);
   }
   std::unique_ptr<Simulation> like(const Likeness& frame) const {
     return std::make_unique<Simulation>(like_frame(*scenario_, frame));
@@ -195,6 +263,15 @@ class Simulation {
   }
   std::uint32_t count_of(const std::string& sensor) const {
     return frames_within(sensor_named(*scenario_, sensor), scenario_->duration);
+  }
+  /// Name, place in the file, role (a mark of the package) and objects of each node of the user's.
+  nb::list own_nodes() const {
+    nb::list nodes;
+    for (const OwnNode& node : scenario_->own_nodes)
+      nodes.append(nb::make_tuple(node.name, node.where,
+                                  node.role == OwnNodeRole::actor ? "actor" : "detector",
+                                  objects_of(*scenario_, node)));
+    return nodes;
   }
   std::string start_utc() const { return format_utc(clock_->utc({0}), 6); }
 
@@ -273,18 +350,22 @@ void add_simulation(nb::module_& module) {
       .def_rw("guided", &Likeness::guided)
       .def_rw("extinction", &Likeness::extinction);
   nb::class_<Stream>(module, "Stream", nb::is_weak_referenceable())
-      .def("next", &Stream::next)
+      .def("next", &Stream::next, nb::arg("models") = nb::none())
+      .def("take_notes", &Stream::take_notes)
       .def("stop", &Stream::stop);
   nb::class_<Simulation>(module, "Simulation")
-      .def_static("of_file",
-                  [](const std::string& path, std::optional<std::uint64_t> seed) {
-                    return of_scenario([&] { return Simulation::of(YamlValue::load(path), seed); });
-                  })
       .def_static(
-          "of_text",
-          [](const std::string& text, const std::string& name, std::optional<std::uint64_t> seed) {
-            return of_scenario([&] { return Simulation::of(YamlValue::parse(text, name), seed); });
+          "of_file",
+          [](const std::string& path, std::optional<std::uint64_t> seed,
+             const std::vector<std::string>& nodes) {
+            return of_scenario([&] { return Simulation::of(YamlValue::load(path), seed, nodes); });
           })
+      .def_static("of_text",
+                  [](const std::string& text, const std::string& name,
+                     std::optional<std::uint64_t> seed, const std::vector<std::string>& nodes) {
+                    return of_scenario(
+                        [&] { return Simulation::of(YamlValue::parse(text, name), seed, nodes); });
+                  })
       .def_static(
           "drawn_of_file",
           [](const std::string& path, std::uint64_t seed) {
@@ -305,6 +386,7 @@ void add_simulation(nb::module_& module) {
              return of_scenario([&] { return simulation.frames(sensors, threads, layers); });
            })
       .def_prop_ro("sensors", &Simulation::sensors)
+      .def_prop_ro("own_nodes", &Simulation::own_nodes)
       .def("count_of", &Simulation::count_of)
       .def_prop_ro("digest", &Simulation::digest)
       .def_prop_ro("start_utc", &Simulation::start_utc)

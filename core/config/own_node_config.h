@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct OwnNode {
   std::vector<std::string> run;  // program and arguments; empty: somebody joins it
   std::string run_where;         // `file:line:column: nodes[0].run`
   std::string directory;         // in which it runs: that of the scenario
+  bool in_process = false;       // its model is a function of this process
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
   bool is_fmu = false;                   // which moves or turns one object
@@ -40,8 +42,10 @@ struct OwnNode {
 
 /// The keys of a node, for lists of them.
 Forms own_nodes_forms();
-/// Reads `nodes:`. Throws `ConfigError` `file:line:column: key: reason`.
-std::vector<OwnNode> read_own_nodes(const YamlValue& value);
+/// Reads `nodes:`. `in_process`: the names of those whose models are functions of this process, of
+/// which programs are ignored. Throws `ConfigError` `file:line:column: key: reason`.
+std::vector<OwnNode> read_own_nodes(const YamlValue& value,
+                                    const std::set<std::string>& in_process = {});
 
 /// Writes the part that determines the products, without the content of files.
 void write_own_nodes(JsonWriter& json, const std::vector<OwnNode>& nodes);

@@ -8,6 +8,7 @@
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "nodes/fusion/fusion_evaluator.h"
+#include "nodes/own/own_program.h"
 #include "nodes/program/scenario_node.h"
 #include "nodes/runtime/process/event.h"
 
@@ -21,7 +22,8 @@ std::unique_ptr<dmise::Participant> make(const dmise::ScenarioNode::Inputs& in) 
   if (!name.empty()) dmise::make_directories(in.directory + "/logs");
   return std::make_unique<dmise::FusionEvaluator>(
       in.scenario, dmise::make_clock(in.scenario), in.directory,
-      dmise::OwnNodeSettings{.note = [](const std::string& line) { spdlog::warn("{}", line); },
+      dmise::OwnNodeSettings{.start = dmise::start_program,
+                             .note = [](const std::string& line) { spdlog::warn("{}", line); },
                              .stop = &dmise::stop_signal()});
 }
 

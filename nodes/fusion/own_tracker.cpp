@@ -91,8 +91,7 @@ void OwnTracker::start() {
   begin.mutable_tracking()->set_cue_delay_ticks(std::uint32_t(scenario_.fusion->cue_delay_ticks));
   said_.continue_at(begin);
   const std::string_view roster[]{roster_, roster_arrays_};
-  program_.emplace(program_settings(scenario_, node_, settings_), std::move(begin), restarts_.any(),
-                   roster);
+  program_ = settings_.start({scenario_, node_, settings_, begin, restarts_.any(), roster});
 }
 
 std::optional<Tracker::Tracked> OwnTracker::step(Tick tick, std::span<const SearchedFrame> frames) {

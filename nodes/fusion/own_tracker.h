@@ -45,7 +45,7 @@ class OwnTracker : public Tracker {
     bool taken = false;
   };
   using Sources = std::map<std::string, Source, std::less<>>;
-  using Told = std::optional<OwnProgram::Tracked>;
+  using Told = std::optional<OwnModel::Tracked>;
 
   void start();
   Told ask(Tick tick, std::span<const SearchedFrame> frames);
@@ -67,7 +67,7 @@ class OwnTracker : public Tracker {
   std::set<std::string, std::less<>> cued_;     // sensors
   std::map<std::uint32_t, Live> live_;          // by id
   std::set<std::uint32_t> ended_;               // ids
-  std::optional<OwnProgram> program_;
+  std::unique_ptr<OwnModel> program_;
   OwnRecord said_;
   OwnRestarts restarts_;
 };

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "nodes/own/own_actor.h"
+#include "nodes/own/own_program.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/program/program.h"
 
@@ -57,9 +58,8 @@ int main(int argc, char** argv) {
     if (!node.consumes.empty() && directory.empty())
       throw dmise::ConfigError("--out: is required of a node that consumes topics");
     dmise::OwnActor actor(scenario, node, dmise::make_clock(scenario),
-                          {.log_path = "",
+                          {.start = dmise::start_program,
                            .journal_path = dmise::input_journal_path(directory, node.name),
-                           .error_prefix = "",
                            .note = [](const std::string& line) { spdlog::warn("{}", line); },
                            .stop = &dmise::stop_signal()});
     if (flags.check) return 0;

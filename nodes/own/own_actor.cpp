@@ -204,7 +204,7 @@ void OwnActor::start() {
     while (heard_->tick() < said_.next() && heard_->next(nullptr)) {
     }
   }
-  program_.emplace(program_settings(scenario_, node_, settings_), std::move(told), restarts_.any());
+  program_ = settings_.start({scenario_, node_, settings_, told, restarts_.any()});
 }
 
 void OwnActor::check(const ObjectStates& states) const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,7 +61,7 @@ class OwnActor : public Participant {
   OwnNodeSettings settings_;
   std::vector<const OwnObject*> objects_;  // in the scenario's order
   std::vector<std::uint32_t> turned_;      // of these, by index
-  std::optional<OwnProgram> program_;
+  std::unique_ptr<OwnModel> program_;
   OwnRecord said_;
   std::optional<InputJournal> journal_;  // if it consumes topics
   Tick kept_ = 0;                        // the first tick that is not in it

@@ -41,7 +41,7 @@ v1::OwnNodeFrame frame_of(const CountImage& counts, const FrameHeader& header, T
   return frame;
 }
 
-std::optional<std::vector<MeasuredSource>> find(OwnProgram& program, const v1::OwnNodeFrame& frame,
+std::optional<std::vector<MeasuredSource>> find(OwnModel& program, const v1::OwnNodeFrame& frame,
                                                 const CountImage& counts) {
   const auto bytes = std::as_bytes(std::span(counts.pixels));
   const auto found =
@@ -68,7 +68,7 @@ SourceFinder own_finder(const Scenario& scenario, const std::string& sensor,
       return told;
     };
     return program->ask(header.frame, header.end, beginning,
-                        [&](OwnProgram& started) { return find(started, frame, counts); });
+                        [&](OwnModel& started) { return find(started, frame, counts); });
   };
 }
 

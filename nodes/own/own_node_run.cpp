@@ -46,19 +46,6 @@ void describe_sensor(const SensorConfig& sensor, v1::OwnNodeSensor& told) {
   told.set_cadence_s(sensor.cadence_s);
 }
 
-ProgramSettings program_settings(const Scenario& scenario, const OwnNode& node,
-                                 const OwnNodeSettings& settings) {
-  ProgramSettings program{.name = node.name,
-                          .command = node.run,
-                          .directory = node.directory,
-                          .log_path = settings.log_path,
-                          .start_within_s = scenario.network.join_within_s,
-                          .silent_after_s = scenario.network.silent_after_s,
-                          .stop = settings.stop};
-  program.command[0] = program_of(node);
-  return program;
-}
-
 bool OwnRecord::wants_checkpoint(Tick call) {
   return call % checkpoint_every == checkpoint_every - 1;
 }
@@ -110,8 +97,7 @@ Tick FrameProgram::tick_after(SimTime end) const {
 
 void FrameProgram::start(const Beginning& beginning) {
   const std::vector<std::string_view> more(beginning.more.begin(), beginning.more.end());
-  program_.emplace(program_settings(scenario_, node_, settings_), beginning.begin, restarts_.any(),
-                   more);
+  program_ = settings_.start({scenario_, node_, settings_, beginning.begin, restarts_.any(), more});
 }
 
 }  // namespace dmise

@@ -1,22 +1,40 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/config/scenario.h"
-#include "nodes/own/own_program.h"
+#include "nodes/own/own_model.h"
 
 namespace dmise {
 
-/// How the program of a node is run, whatever it is for.
+class Event;
+struct ModelBeginning;
+
+/// Starts the model of a node: `start_program` (nodes/own/own_program.h), or one in this process.
+using ModelStarter = std::function<std::unique_ptr<OwnModel>(const ModelBeginning&)>;
+
+/// How the model of a node is run, whatever it is for.
 struct OwnNodeSettings {
-  std::string log_path;           // of the program's output; empty: stderr of this process
+  ModelStarter start;
+  std::string log_path = {};      // of the program's output; empty: stderr of this process
   std::string journal_path = {};  // of what an actor hears, if it consumes topics
-  std::string error_prefix;       // of errors; empty where the run names the node
+  std::string error_prefix = {};  // of errors; empty where the run names the node
   std::function<void(const std::string&)> note = [](const std::string&) {};  // hears lines
   const Event* stop = nullptr;
+};
+
+/// What a model is started with.
+struct ModelBeginning {
+  const Scenario& scenario;
+  const OwnNode& node;
+  const OwnNodeSettings& settings;
+  const v1::OwnNodeBegin& begin;  // what it is told
+  bool again = false;             // it has been started before
+  OwnModel::Frames more = {};     // frames after `begin`
 };
 
 /// What a program is told as it begins, without its objects.
@@ -24,9 +42,6 @@ v1::OwnNodeBegin begin_of(const Scenario& scenario, const OwnNode& node);
 
 /// Adds what a program is told of a sensor: where it is, and when it observes.
 void describe_sensor(const SensorConfig& sensor, v1::OwnNodeSensor& told);
-
-ProgramSettings program_settings(const Scenario& scenario, const OwnNode& node,
-                                 const OwnNodeSettings& settings);
 
 /// What a program has said, call by call: one that was started again continues from its last
 /// checkpoint and must say the same.
@@ -110,7 +125,7 @@ class FrameProgram {
   OwnNode node_;
   OwnNodeSettings settings_;
   v1::OwnNodeBegin begin_;
-  std::optional<OwnProgram> program_;
+  std::unique_ptr<OwnModel> program_;
   OwnRestarts restarts_;
 };
 

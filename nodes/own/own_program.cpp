@@ -14,9 +14,7 @@
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/process/spawn.h"
 #include "nodes/runtime/transport/socket.h"
-#include "nodes/wire/content_digest.h"
 #include "nodes/wire/own_node.h"
-#include "nodes/wire/state_codec.h"
 
 namespace dmise {
 namespace {
@@ -40,12 +38,6 @@ std::string end_text(int status) {
   if (WIFSIGNALED(status))
     return std::string("its program was killed (") + strsignal(WTERMSIG(status)) + ")";
   return "its program has ended with code " + std::to_string(WEXITSTATUS(status));
-}
-
-v1::OwnNodeRequest request_of(const v1::OwnNodeStep& step) {
-  v1::OwnNodeRequest request;
-  *request.mutable_step() = step;
-  return request;
 }
 
 }  // namespace
@@ -79,8 +71,8 @@ OwnProgram::OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, 
   v1::OwnNodeRequest request;
   *request.mutable_begin() = std::move(begin);
   try {
-    if (!send(request, settings.start_within_s, more)) return;
-    const auto got = answer(settings.start_within_s);
+    if (!send_within(settings.start_within_s, request, more)) return;
+    const auto got = answer_within(settings.start_within_s);
     if (got && !got->head.has_ready()) throw Error("its program does not say that it is ready");
   } catch (...) {
     end(SIGKILL);
@@ -125,7 +117,7 @@ bool OwnProgram::try_to_send(const v1::OwnNodeRequest& request, Frames more) {
   return true;
 }
 
-bool OwnProgram::send(const v1::OwnNodeRequest& request, double within_s, Frames more) {
+bool OwnProgram::send_within(double within_s, const v1::OwnNodeRequest& request, Frames more) {
   const Instant begun = now();
   while (!stopped()) {
     if (try_to_send(request, more)) return true;
@@ -144,14 +136,11 @@ void OwnProgram::wait_until(short ready, std::chrono::milliseconds at_most) {
 
 std::optional<OwnProgram::Answer> OwnProgram::receive() {
   while (true) {
-    Answer answer{.head = {}, .frames = dmise::receive(socket_)};
-    if (answer.frames.empty()) return std::nullopt;
+    const auto message =
+        std::make_shared<const std::vector<zmq::message_t>>(dmise::receive(socket_));
+    if (message->empty()) return std::nullopt;
     heard_ = now();
-    if (!from_frame(answer.frames[0], &answer.head) ||
-        answer.head.body_case() == v1::OwnNodeAnswer::BODY_NOT_SET)
-      throw Error("what its program says is no answer (" + std::to_string(answer.frames[0].size()) +
-                  " bytes)");
-    if (answer.head.has_failed()) throw Error(printable(answer.head.failed()));
+    Answer answer = answer_in(views(*message), message);
     if (!answer.head.has_alive()) return answer;
   }
 }
@@ -175,7 +164,7 @@ void OwnProgram::require_alive() {
   throw_end();
 }
 
-std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
+std::optional<OwnProgram::Answer> OwnProgram::answer_within(double within_s) {
   const Instant asked = heard_ = now();
   for (Instant awake = asked; !stopped(); awake = now()) {
     wait_until(ZMQ_POLLIN, look_every);
@@ -196,84 +185,19 @@ std::optional<OwnProgram::Answer> OwnProgram::answer(double within_s) {
   return std::nullopt;
 }
 
-std::optional<OwnProgram::Answer> OwnProgram::heard(const char* what,
-                                                    v1::OwnNodeAnswer::BodyCase wanted,
-                                                    std::size_t frames) {
-  auto got = answer(working_within_s);
-  if (!got) return std::nullopt;
-  if (got->head.body_case() != wanted)
-    throw Error(std::string("its program answers a ") + what + " by something else");
-  if (got->frames.size() != frames)
-    throw Error("its program answers in " + std::to_string(got->frames.size()) +
-                " frames instead of " + std::to_string(frames));
-  return got;
-}
+std::optional<OwnProgram::Answer> OwnProgram::answer() { return answer_within(working_within_s); }
 
-bool OwnProgram::ask(const v1::OwnNodeStep& step, const EnvironmentState& environment) {
-  const std::string payload = encode(environment).payload;
-  const std::string_view more[]{payload};
-  return send(request_of(step), settings_.silent_after_s, more);
-}
-
-bool OwnProgram::ask_ahead(const v1::OwnNodeStep& step, const EnvironmentState& environment) {
-  const std::string payload = encode(environment).payload;
-  const std::string_view more[]{payload};
-  return try_to_send(request_of(step), more);
-}
-
-std::optional<OwnProgram::Stepped> OwnProgram::stepped() {
-  auto got = heard("step", v1::OwnNodeAnswer::kStepped, 3);
-  if (!got) return std::nullopt;
-  const auto frames = views(got->frames);
-  Stepped stepped;
-  stepped.states = std::get<ObjectStates>(decode(MessageKind::object_states, frames[1], frames[2]));
-  stepped.digest = content_digest(MessageKind::object_states, frames[1], frames[2]);
-  if (got->head.stepped().has_checkpoint())
-    stepped.checkpoint = std::move(*got->head.mutable_stepped()->mutable_checkpoint());
-  return stepped;
-}
-
-std::optional<OwnProgram::Answer> OwnProgram::exchange(const v1::OwnNodeRequest& request,
-                                                       Frames more, const char* what,
-                                                       v1::OwnNodeAnswer::BodyCase wanted,
-                                                       std::size_t frames) {
-  if (!send(request, settings_.silent_after_s, more)) return std::nullopt;
-  return heard(what, wanted, frames);
-}
-
-std::optional<v1::OwnNodeFound> OwnProgram::find(const v1::OwnNodeFrame& frame,
-                                                 std::string_view counts) {
-  v1::OwnNodeRequest request;
-  *request.mutable_frame() = frame;
-  auto got = exchange(request, {&counts, 1}, "frame", v1::OwnNodeAnswer::kFound, 1);
-  if (!got) return std::nullopt;
-  return std::move(*got->head.mutable_found());
-}
-
-std::optional<v1::OwnNodeObserved> OwnProgram::observe(const v1::OwnNodeObserve& exposure,
-                                                       Frames more) {
-  v1::OwnNodeRequest request;
-  *request.mutable_observe() = exposure;
-  auto got = exchange(request, more, "frame", v1::OwnNodeAnswer::kObserved, 1);
-  if (!got) return std::nullopt;
-  return std::move(*got->head.mutable_observed());
-}
-
-std::optional<OwnProgram::Tracked> OwnProgram::track(const v1::OwnNodeTrack& track,
-                                                     Frames exposures) {
-  v1::OwnNodeRequest request;
-  *request.mutable_track() = track;
-  auto got = exchange(request, exposures, "tick", v1::OwnNodeAnswer::kTracked, 2);
-  if (!got) return std::nullopt;
-  v1::OwnNodeTracked& head = *got->head.mutable_tracked();
-  const std::string_view set = views(got->frames)[1];
-  Tracked tracked;
-  tracked.tracks = std::get<TrackSet>(decode(MessageKind::track_set, set, {}));
-  if (head.has_checkpoint()) tracked.checkpoint = std::move(*head.mutable_checkpoint());
-  head.clear_checkpoint();
-  tracked.digest = content_digest(MessageKind::track_set, set, head.SerializeAsString());
-  if (head.has_points()) tracked.points = std::move(*head.mutable_points());
-  return tracked;
+std::unique_ptr<OwnModel> start_program(const ModelBeginning& beginning) {
+  const auto& [scenario, node, settings, begin, again, more] = beginning;
+  ProgramSettings program{.name = node.name,
+                          .command = node.run,
+                          .directory = node.directory,
+                          .log_path = settings.log_path,
+                          .start_within_s = scenario.network.join_within_s,
+                          .silent_after_s = scenario.network.silent_after_s,
+                          .stop = settings.stop};
+  program.command[0] = program_of(node);
+  return std::make_unique<OwnProgram>(program, begin, again, more);
 }
 
 }  // namespace dmise

@@ -2,34 +2,19 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 #include <zmq.hpp>
 
-#include "core/base/error.h"
 #include "core/base/instant.h"
-#include "core/sim/message.h"
-#include "core/sim/state.h"
-#include "dmise/v1/own_node.pb.h"
+#include "nodes/own/own_model.h"
+#include "nodes/own/own_node_run.h"
 #include "nodes/own/private_endpoint.h"
 #include "nodes/runtime/process/event.h"
 
 namespace dmise {
-
-/// The program has died or is silent: another process may take its place.
-class ProgramLost : public Error {
- public:
-  using Error::Error;
-};
-
-/// The program has ended by itself.
-class ProgramEnded : public Error {
- public:
-  using Error::Error;
-};
 
 /// How a program is started and how long it may be silent.
 struct ProgramSettings {
@@ -42,64 +27,32 @@ struct ProgramSettings {
   const Event* stop = nullptr;  // ends the wait for an answer
 };
 
-/// A program of the user's as a child process, and what is said with it (docs/wire.md, Own nodes).
-/// All functions throw `ProgramLost` or `ProgramEnded`, and `Error` for an answer that is not one
-/// or says that the program failed.
-class OwnProgram {
+/// A program of the user's as a child process. All functions throw `ProgramLost` or `ProgramEnded`
+/// as well.
+class OwnProgram : public OwnModel {
  public:
-  using Frames = std::span<const std::string_view>;
-
   /// Starts the program, and tells it to begin; `more`: the frames after that.
   OwnProgram(const ProgramSettings& settings, v1::OwnNodeBegin begin, bool keep_log,
              Frames more = {});
   /// Ends it.
-  ~OwnProgram();
+  ~OwnProgram() override;
   OwnProgram(const OwnProgram&) = delete;
   OwnProgram& operator=(const OwnProgram&) = delete;
 
-  struct Stepped {
-    ObjectStates states;
-    std::uint64_t digest = 0;  // of the states as they came
-    std::optional<std::string> checkpoint;
-  };
-  /// Asks for the states of a tick; false after the stop.
-  bool ask(const v1::OwnNodeStep& step, const EnvironmentState& environment);
-  /// Asks for those of a further tick before it has answered; false if it is not there any more.
-  bool ask_ahead(const v1::OwnNodeStep& step, const EnvironmentState& environment);
-  /// What it says of the first tick that it has not answered; nothing after the stop.
-  std::optional<Stepped> stepped();
-  /// What it finds in a frame with these counts; nothing after the stop.
-  std::optional<v1::OwnNodeFound> find(const v1::OwnNodeFrame& frame, std::string_view counts);
-  /// What it observes in an exposure; nothing after the stop. `more`: the frames after the request.
-  std::optional<v1::OwnNodeObserved> observe(const v1::OwnNodeObserve& exposure, Frames more);
-
-  struct Tracked {
-    TrackSet tracks;
-    std::optional<v1::OwnNodePoints> points;
-    std::uint64_t digest = 0;  // of both as they came
-    std::optional<std::string> checkpoint;
-  };
-  /// What it makes of a tick's exposures; nothing after the stop.
-  std::optional<Tracked> track(const v1::OwnNodeTrack& track, Frames exposures);
-
  private:
-  struct Answer {
-    v1::OwnNodeAnswer head;
-    std::vector<zmq::message_t> frames;
-  };
   /// False while nobody is connected.
   bool try_to_send(const v1::OwnNodeRequest& request, Frames more = {});
   /// Waits until the program is connected; false after the stop.
-  bool send(const v1::OwnNodeRequest& request, double within_s, Frames more = {});
-  /// Asks, and returns the answer as `heard` does.
-  std::optional<Answer> exchange(const v1::OwnNodeRequest& request, Frames more, const char* what,
-                                 v1::OwnNodeAnswer::BodyCase wanted, std::size_t frames);
-  /// The next answer, which must be of this kind and have this many frames; nothing after the stop.
-  /// `what`: that it answers, for messages.
-  std::optional<Answer> heard(const char* what, v1::OwnNodeAnswer::BodyCase wanted,
-                              std::size_t frames);
+  bool send_within(double within_s, const v1::OwnNodeRequest& request, Frames more);
+  bool send(const v1::OwnNodeRequest& request, Frames more) override {
+    return send_within(settings_.silent_after_s, request, more);
+  }
+  bool send_ahead(const v1::OwnNodeRequest& request, Frames more) override {
+    return try_to_send(request, more);
+  }
+  std::optional<Answer> answer() override;
   /// Waits for an answer; nothing after the stop.
-  std::optional<Answer> answer(double within_s);
+  std::optional<Answer> answer_within(double within_s);
   void wait_until(short ready, std::chrono::milliseconds at_most);
   /// What came, if it is not a sign of life.
   std::optional<Answer> receive();
@@ -119,5 +72,8 @@ class OwnProgram {
   int status_ = 0;    // with which it has
   Instant heard_{0};  // when it last gave a sign of life
 };
+
+/// Starts the program of a node; a `ModelStarter`.
+std::unique_ptr<OwnModel> start_program(const ModelBeginning& beginning);
 
 }  // namespace dmise

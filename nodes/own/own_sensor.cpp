@@ -77,7 +77,7 @@ FrameProgram::Beginning beginning_of(const v1::OwnNodeBegin& begin, const Sensor
   return beginning;
 }
 
-std::optional<Observed> observe(OwnProgram& program, const v1::OwnNodeObserve& request,
+std::optional<Observed> observe(OwnModel& program, const v1::OwnNodeObserve& request,
                                 const ObserverExposure& exposure,
                                 std::span<const std::string> world) {
   const std::vector<std::string_view> more(world.begin(), world.end());
@@ -104,7 +104,7 @@ ExposureObserver own_observer(const Scenario& scenario, const std::string& senso
     return program->ask(
         exposure.frame, exposure.end,
         [&] { return beginning_of(program->begin(), config, exposure.roster); },
-        [&](OwnProgram& started) { return observe(started, request, exposure, world); });
+        [&](OwnModel& started) { return observe(started, request, exposure, world); });
   };
 }
 

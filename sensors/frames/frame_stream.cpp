@@ -57,6 +57,9 @@ struct FrameStream::Work {
   std::mutex mutex;  // guards what follows
   std::condition_variable changed;
   bool asked = false, over = false;
+  const FunctionRequest* request = nullptr;
+  std::optional<std::vector<std::string>> answer;
+  std::vector<std::string> notes;
   std::unique_ptr<StreamedFrame> frame;
   std::exception_ptr failure;
 
@@ -74,6 +77,25 @@ struct FrameStream::Work {
       changed.notify_all();
     }
     wait_until_asked();
+  }
+
+  /// Has the thread that waits for a frame ask a model.
+  std::vector<std::string> ask_model(const FunctionRequest& asked) {
+    std::unique_lock lock(mutex);
+    request = &asked;
+    changed.notify_all();
+    changed.wait(lock, [&] { return answer || stopped; });
+    request = nullptr;
+    if (!answer) throw Cancelled();
+    return *std::exchange(answer, std::nullopt);
+  }
+
+  OwnNodeSettings models() {
+    const auto function = [this](const FunctionRequest& asked) { return ask_model(asked); };
+    return {.start = functions_in_process(function), .note = [this](const std::string& line) {
+              std::lock_guard lock(mutex);
+              notes.push_back(line);
+            }};
   }
 
   FrameTap tap(const std::string& sensor) {
@@ -104,7 +126,7 @@ struct FrameStream::Work {
     Threads threads(options.threads);
     std::vector<FrameTap> taps;
     for (const std::string& sensor : options.sensors) taps.push_back(tap(sensor));
-    make_frames(*source.scenario, source.scene(), source.digest, taps, threads);
+    make_frames(*source.scenario, source.scene(), source.digest, taps, threads, models());
   }
 
   void run() {
@@ -141,7 +163,29 @@ void FrameStream::ask() {
 
 bool FrameStream::wait(std::chrono::milliseconds time) {
   std::unique_lock lock(work_->mutex);
-  return work_->changed.wait_for(lock, time, [this] { return work_->frame || work_->over; });
+  return work_->changed.wait_for(lock, time,
+                                 [this] { return work_->request || work_->frame || work_->over; });
+}
+
+std::optional<ModelRequest> FrameStream::request() const {
+  std::lock_guard lock(work_->mutex);
+  if (!work_->request || work_->stopped) return std::nullopt;
+  const FunctionRequest& asked = *work_->request;
+  return ModelRequest{.node = std::string(asked.node),
+                      .sensor = std::string(asked.sensor),
+                      .frames = {asked.frames.begin(), asked.frames.end()}};
+}
+
+void FrameStream::answer(std::vector<std::string> frames) {
+  std::lock_guard lock(work_->mutex);
+  work_->request = nullptr;
+  work_->answer = std::move(frames);
+  work_->changed.notify_all();
+}
+
+std::vector<std::string> FrameStream::take_notes() {
+  std::lock_guard lock(work_->mutex);
+  return std::exchange(work_->notes, {});
 }
 
 std::unique_ptr<StreamedFrame> FrameStream::take() {

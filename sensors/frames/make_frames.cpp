@@ -7,6 +7,8 @@
 #include "core/config/make_clock.h"
 #include "core/sim/controller.h"
 #include "nodes/environment/environment_actor.h"
+#include "nodes/own/own_actor.h"
+#include "nodes/own/own_detector.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "sensors/pipeline/sensor_evaluator.h"
@@ -16,7 +18,8 @@ namespace {
 
 std::unique_ptr<Participant> make_tapped(const Scenario& scenario, const FrameTap& tap,
                                          const std::string& digest,
-                                         std::shared_ptr<const StarMap> stars, Threads& threads) {
+                                         std::shared_ptr<const StarMap> stars, Threads& threads,
+                                         const OwnNodeSettings& models) {
   const SensorConfig& sensor = sensor_named(scenario, tap.sensor);
   if (const auto* cued = std::get_if<PointCued>(&sensor.pointing))
     throw ConfigError(cued->where +
@@ -24,6 +27,9 @@ std::unique_ptr<Participant> make_tapped(const Scenario& scenario, const FrameTa
   PipelineSettings settings = sensor_settings(scenario, tap.sensor, digest);
   settings.output = {};
   settings.star_truth = false;
+  OwnNodeSettings detector = models;
+  detector.error_prefix = tap.sensor + ": ";
+  settings.finder = own_finder(scenario, tap.sensor, "", std::move(detector));
   if (tap.set_up) tap.set_up(settings);
   auto evaluator =
       std::make_unique<SensorEvaluator>(settings, run_grid(scenario), std::move(stars), threads);
@@ -34,15 +40,22 @@ std::unique_ptr<Participant> make_tapped(const Scenario& scenario, const FrameTa
 }  // namespace
 
 void make_frames(Scenario scenario, ScenarioInputs scene, const std::string& digest,
-                 const std::vector<FrameTap>& taps, Threads& threads) {
+                 const std::vector<FrameTap>& taps, Threads& threads,
+                 const OwnNodeSettings& models) {
   scenario.network.publish_states = false;  // nobody outside this process can take them
   const Clock clock = make_clock(scenario);
   std::vector<std::unique_ptr<Participant>> participants;
   participants.push_back(
       std::make_unique<OrbitActor>(scenario, clock, std::move(scene.population), threads));
   participants.push_back(std::make_unique<EnvironmentActor>(scenario, clock));
+  for (const OwnNode& node : scenario.own_nodes) {
+    if (node.role != OwnNodeRole::actor) continue;
+    OwnNodeSettings actor = models;
+    actor.error_prefix = node.name + ": ";
+    participants.push_back(std::make_unique<OwnActor>(scenario, node, clock, std::move(actor)));
+  }
   for (const FrameTap& tap : taps)
-    participants.push_back(make_tapped(scenario, tap, digest, scene.stars, threads));
+    participants.push_back(make_tapped(scenario, tap, digest, scene.stars, threads, models));
   SimulationController(std::move(participants)).run(scenario.last_tick(), [](Tick) {
     return true;
   });

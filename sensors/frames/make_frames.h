@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "nodes/own/own_node_run.h"
 #include "sensors/frames/load_scene.h"
 #include "sensors/pipeline/frame_pipeline.h"
 
@@ -18,9 +19,11 @@ struct FrameTap {
 };
 
 /// Makes all frames of the sensors of `taps`, as a run of the scenario does; `digest` goes into
-/// their headers. Throws `ConfigError` for a sensor that is cued, which needs the detections of
-/// all sensors, and what a run throws.
+/// their headers. `models`: how those of the scenario's nodes are run that move or turn objects, or
+/// detect. Throws `ConfigError` for a sensor that is cued, which needs the detections of all
+/// sensors, and what a run throws.
 void make_frames(Scenario scenario, ScenarioInputs scene, const std::string& digest,
-                 const std::vector<FrameTap>& taps, Threads& threads);
+                 const std::vector<FrameTap>& taps, Threads& threads,
+                 const OwnNodeSettings& models = {});
 
 }  // namespace dmise

@@ -13,6 +13,7 @@
 #include "core/plan/cost_factors.h"
 #include "core/products/frame_file.h"
 #include "nodes/own/own_detector.h"
+#include "nodes/own/own_program.h"
 #include "nodes/own/own_sensor.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/observability/metrics.h"
@@ -106,6 +107,7 @@ int main(int argc, char** argv) {
     dmise::Threads pool(threads);
     prepare_program(scenario, flags.name, out, allowed);
     const dmise::OwnNodeSettings settings{
+        .start = dmise::start_program,
         .note = [](const std::string& line) { spdlog::warn("{}", line); },
         .stop = &dmise::stop_signal()};
     const auto sensor =

@@ -9,9 +9,10 @@ from .message import Message as Message
 from .node import Node as Node, Tick as Tick
 from .orbit_fit import Orbit as Orbit, Triangulated as Triangulated, fit_orbit as fit_orbit, triangulate as triangulate
 from .own_detector import Detector as Detector, Found as Found, SensorFrame as SensorFrame, detector as detector
-from .own_node import Actor as Actor, World as World, actor as actor, serve as serve
+from .own_node import Actor as Actor, World as World, actor as actor
 from .own_sensor import Exposure as Exposure, Observer as Observer, Sighting as Sighting, Sightings as Sightings
 from .own_sensor import sensor as sensor
+from .own_socket import serve as serve
 from .own_states import State as State
 from .own_tracker import Point as Point, SearchedFrame as SearchedFrame, Sensor as Sensor, Tracker as Tracker
 from .own_tracker import Tracks as Tracks, tracker as tracker

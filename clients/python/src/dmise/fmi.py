@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from .dynamics import rotation_matrix
-from .own_node import World, actor, serve
+from .own_node import World, actor
+from .own_socket import serve
 from .own_states import State
 from .records import Floats
 

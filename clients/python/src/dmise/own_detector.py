@@ -78,6 +78,8 @@ class SensorFrame:
 class Detector(Served):
     """A function `f(frame, options)` that returns what is in a frame, or a class whose instances are called so."""
 
+    mark = "detector"
+
 
 def detector(model: Callable[..., Any]) -> Detector:
     """Marks a function or class that detects in the frames of a sensor."""

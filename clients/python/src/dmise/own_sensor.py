@@ -85,6 +85,8 @@ class Sightings:
 class Observer(Served):
     """A function `f(exposure, world, options)` that returns sightings, or a class whose instances are called so."""
 
+    mark = "sensor"
+
 
 def sensor(model: Callable[..., Any]) -> Observer:
     """Marks a function or class that is a sensor."""

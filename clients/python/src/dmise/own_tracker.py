@@ -75,6 +75,8 @@ class Tracker(Served):
     A class may have `checkpoint() -> bytes` and `restore(bytes)`; else what it remembers is made again from the first tick.
     """
 
+    mark = "tracker"
+
 
 def tracker(model: Callable[..., Any]) -> Tracker:
     """Marks a function or class that makes tracks of the detections of all sensors."""

@@ -12,8 +12,8 @@ import json
 import pathlib
 import types
 import warnings
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,11 @@ from .records import Detection, FrameReport, Record, Truth
 from .scenario_text import Scenario, seed_of, source_of
 from .tables import Table, table_of
 
+if TYPE_CHECKING:
+    from .own_detector import Detector
+    from .own_node import Actor
+    from .own_served import Served
+
 LAYERS = ("stars", "objects", "sky")
 
 
@@ -36,16 +41,27 @@ class Simulation:
 
     scenario    path of a YAML file, YAML text of several lines, or a mapping with the keys of one
     seed        of the random numbers, instead of the scenario's
+    nodes       by the names of the scenario's `nodes`, what `@dmise.actor(..)` or `@dmise.detector` marks: models that `frames`
+                calls in place of their programs. The model of each node is needed
 
-    Raises `ScenarioError` with file, line, column and key, as the command line prints it.
+    Raises `ScenarioError` with file, line, column and key, as the command line prints it, also for a node without a model or with
+    one that is not what the scenario has it do.
     """
 
-    def __init__(self, scenario: Scenario, seed: int | None = None) -> None:
+    def __init__(self, scenario: Scenario, seed: int | None = None, nodes: Mapping[str, Actor | Detector] | None = None) -> None:
         self._text, self._name = source_of(scenario)
+        if nodes is not None and not isinstance(nodes, Mapping):
+            raise TypeError(f"nodes: must be a mapping of names to models, got {type(nodes).__name__}")
+        names = [str(name) for name in nodes or ()]
         if self._text is None:
-            self._core = core.Simulation.of_file(self._name, seed_of(seed))
+            self._core = core.Simulation.of_file(self._name, seed_of(seed), names)
         else:
-            self._core = core.Simulation.of_text(self._text, self._name, seed_of(seed))
+            self._core = core.Simulation.of_text(self._text, self._name, seed_of(seed), names)
+        self._models: dict[str, Served] = {}
+        if nodes:
+            from .own_in_process import checked_models  # which needs protobuf
+
+            self._models = checked_models(self._core.own_nodes, nodes)
 
     @property
     def sensors(self) -> list[str]:
@@ -87,6 +103,9 @@ class Simulation:
                progress: bool = False) -> Iterator[SimulatedFrame]:
         """Frames of sensors, of all if none is named, in the order of a run. One is made when it is asked for.
 
+        The models of `nodes` are made anew, and called at each tick or frame in order, by the thread that asks. What one raises
+        ends the iteration, with a note of node and tick; `EngineError` says what is wrong with its answer.
+
         threads   that compute; the frames do not depend on them
         layers    keeps the expected light of stars, objects and sky, and masks of objects, which takes longer
         progress  shows a bar; needs tqdm
@@ -99,12 +118,28 @@ class Simulation:
 
     def _iterate(self, stream: Any) -> Iterator[SimulatedFrame]:
         start = self.start_utc
+        models = self._called_anew()
         try:
-            while (made := stream.next()) is not None:
+            while (made := stream.next(models)) is not None:
+                _warn(stream)
                 yield SimulatedFrame(made, start)
                 del made
+            _warn(stream)
         finally:
             stream.stop()
+
+    def _called_anew(self) -> Callable[[str, str, list[bytes]], list[bytes]] | None:
+        if not self._models:
+            return None
+        from .own_in_process import ModelsInProcess
+
+        return ModelsInProcess(self._models)
+
+
+def _warn(stream: Any) -> None:
+    """Of what a run says of its models."""
+    for note in stream.take_notes():
+        warnings.warn(note, RuntimeWarning, stacklevel=3)
 
 
 class SimulatedFrame:
