@@ -19,6 +19,15 @@ constexpr double unknown_distortion = 0.003;
 constexpr double next_order = 0.1;
 constexpr std::size_t radial_term = 8;  // u^3 along x
 
+/// Radial distortion of third order at the corner [px, rms] that a fit with this term allows: what
+/// is believed of lenses before, and its measurement.
+double allowed_radial_px(const PlateFit& fit, double before_px) {
+  const double variance = fit.variance(fit.free.size() - 1);
+  const double shrink = before_px * before_px / (before_px * before_px + variance);
+  const double mean_px = shrink * fit.model.distortion[radial_term];
+  return std::sqrt(mean_px * mean_px + shrink * variance);
+}
+
 }  // namespace
 
 PlateFrame::PlateFrame(std::span<const PlateSource> sources, const PlateBelief& belief,
@@ -135,7 +144,7 @@ std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPositio
 
 std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
                                              std::span<const PlateMatch> pairs,
-                                             std::vector<PlateRival>& rivals) const {
+                                             PlateSolution& solution) const {
   const PlateFitSettings settings{.least_sigma_px = star_sigma_px(model)};
   struct Candidate {
     PlateFit fit;
@@ -151,6 +160,8 @@ std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
                                      {.focal_length = true, .radial = true}};
   for (int order = 1; order <= search_.most_order; ++order)
     freedoms.push_back({.focal_length = true, .order = order});
+  const double unknown_px = unknown_distortion * half_diagonal_px();
+  solution.left_out_px = unknown_px;
   for (const PlateFreedom& free : freedoms) {
     if (free.size() > 4 && measured < least_of_rivals * free.size()) continue;
     PlateModel from = model;
@@ -160,6 +171,7 @@ std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
     const auto fit = fit_plate(from, pairs, free, settings);
     const double degrees = fit ? 2.0 * fit->count - free.size() : 0.0;
     if (!(degrees > 0)) continue;
+    if (free.radial) solution.left_out_px = allowed_radial_px(*fit, unknown_px);
     // Bayes' information criterion; a residual of a hundredth of a sigma is as good as none.
     const double score = measured * std::log(std::max(fit->chi2 / fit->count, 1e-4)) -
                          2 * std::log(2.0) * (fit->count - all) * 2 +
@@ -169,14 +181,18 @@ std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
     const bool determined = free.size() <= 4 || 2.0 * fit->count >= least_measured * free.size();
     if (determined && (!best || score < candidates[*best].score)) best = candidates.size() - 1;
   }
-  rivals.clear();
+  solution.rivals.clear();
   if (!best) return std::nullopt;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const double weight = std::exp(0.5 * (candidates[*best].score - candidates[i].score));
     if (i != *best && weight >= least_weight)
-      rivals.push_back({std::move(candidates[i].fit), std::min(weight, 1.0)});
+      solution.rivals.push_back({std::move(candidates[i].fit), std::min(weight, 1.0)});
   }
-  return std::move(candidates[*best].fit);
+  const PlateFit& chosen = candidates[*best].fit;
+  if (chosen.free.radial)
+    solution.left_out_px = next_order * std::abs(chosen.model.distortion[radial_term]);
+  if (chosen.free.order >= 3) solution.left_out_px = 0.0;
+  return chosen;
 }
 
 double PlateSolution::sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) const {
@@ -192,12 +208,10 @@ double PlateSolution::sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) 
   }
   double variance = sum / weights;
   const PlateModel& model = fit.model;
-  if ((fit.free.order < 3) && model.unit_px > 0.0) {
+  if (model.unit_px > 0.0) {
     const PixelPosition at = pixel - model.centre;
     const double r = std::hypot(at.x_px, at.y_px) / model.unit_px, known = reach_px / model.unit_px;
-    const double corner_px = fit.free.radial ? next_order * std::abs(model.distortion[radial_term])
-                                             : unknown_distortion * model.unit_px;
-    const double beyond_px = corner_px * std::max(0.0, r * r * r - known * known * known);
+    const double beyond_px = left_out_px * std::max(0.0, r * r * r - known * known * known);
     variance += 0.5 * beyond_px * beyond_px;
   }
   return std::sqrt(variance);
@@ -227,7 +241,7 @@ std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
   double near_px = 2.0;
   for (int pass = 0; pass < 3; ++pass) {
     const auto pairs = pairs_within(near_px);
-    best = best_fit(model, pairs, solution.rivals);
+    best = best_fit(model, pairs, solution);
     if (!best) return std::nullopt;
     model = best->model;
     solution.matches = pairs;

@@ -43,6 +43,8 @@ struct PlateSolution {
   PlateFit fit;
   std::vector<PlateRival> rivals;
   double reach_px = 0.0;  // from the frame's middle to the farthest star of the fit
+  /// Radial distortion in a corner that the fit leaves out and its stars allow, rms.
+  double left_out_px = 0.0;
   std::vector<SeenStar> stars;
   std::vector<PlateMatch> matches;  // of `stars` with sources, by the order given
   double log_odds = 0.0;            // that it is no chance match among all that were tried
@@ -84,10 +86,10 @@ class PlateFrame {
   std::optional<PlateSolution> fit(PlateModel model) const;
 
  private:
-  /// Fits matches with each of a list of freedoms and chooses by Bayes' information criterion. Puts
-  /// the others that may be right into `rivals`.
+  /// Fits matches with each of a list of freedoms and chooses by Bayes' information criterion;
+  /// tells the solution the others that may be right, and what distortion the fit leaves out.
   std::optional<PlateFit> best_fit(const PlateModel& model, std::span<const PlateMatch> pairs,
-                                   std::vector<PlateRival>& rivals) const;
+                                   PlateSolution& solution) const;
   /// Stars about the frame, of which it shows somewhat more than it has sources.
   std::vector<SeenStar> stars_around(const PlateModel& model, std::size_t sources) const;
   double star_sigma_px(const PlateModel& model) const {

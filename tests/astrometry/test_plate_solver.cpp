@@ -186,45 +186,71 @@ SeenPlate distorted_plate(const PlateSky& sky, double corner_px, std::size_t sta
 
 // Of 15 stars, in the whole frame or in its middle alone, through lenses that depart by nothing to
 // 6 px in the corners, on a grid of places over the frame.
+struct StatedErrors {
+  int places = 0, plates = 0,
+      beyond = 0;                     // beyond: plates with a place off by what one in 10,000 has
+  double error2 = 0.0, sigma2 = 0.0;  // along one axis, sums [px^2]
+
+  double ratio() const { return std::sqrt(sigma2 / error2); }
+  double sigma_px() const { return std::sqrt(sigma2 / places); }
+};
+
+/// Of 25 places all over each of the plates.
+StatedErrors stated_errors(const PlateSky& sky, double corner_px, std::size_t stars, double within,
+                           unsigned seeds) {
+  StatedErrors all;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const SeenPlate p = distorted_plate(sky, corner_px, stars, within, seed);
+    if (p.sources.size() < stars) continue;
+    const PlateSolution s = solve(p, sky);
+    double most_sigmas = 0.0;
+    for (int j = 0; j <= 4; ++j)
+      for (int i = 0; i <= 4; ++i) {
+        const PixelPosition at{i * 1999 / 4.0, j * 1499 / 4.0};
+        const Vec<Gcrs> direction = p.truth.direction(at).value();
+        const PixelPosition by = s.fit.model.pixel(direction).value();
+        const double error_px = std::hypot(by.x_px - at.x_px, by.y_px - at.y_px);
+        const double sigma = s.sigma_px(direction, by);
+        all.error2 += error_px * error_px / 2;
+        all.sigma2 += sigma * sigma;
+        ++all.places;
+        most_sigmas = std::max(most_sigmas, error_px / sigma);
+      }
+    ++all.plates;
+    all.beyond += most_sigmas > 4.3;
+  }
+  std::printf(
+      "%zu stars within %.1f, %+.0f px in the corners: error %.3f px, stated %.3f, %d of %d "
+      "beyond\n",
+      stars, within, corner_px, std::sqrt(all.error2 / all.places), all.sigma_px(), all.beyond,
+      all.plates);
+  return all;
+}
+
 TEST(PlateSolver, PlatesOfFewStarsTellTheirErrorInTheCorners) {
   const PlateSky sky = test::sky_of(test::kstars());
   for (const double within : {1.0, 0.6})
     for (const double corner_px : {0.0, 2.0, -6.0}) {
-      int places = 0, plates = 0, beyond = 0;
-      double error2 = 0.0, sigma2 = 0.0;
-      for (unsigned seed = 1; seed <= 100; ++seed) {
-        const SeenPlate p = distorted_plate(sky, corner_px, 15, within, seed);
-        if (p.sources.size() < 15) continue;
-        const PlateSolution s = solve(p, sky);
-        double most_sigmas = 0.0;
-        for (int j = 0; j <= 4; ++j)
-          for (int i = 0; i <= 4; ++i) {
-            const PixelPosition at{i * 1999 / 4.0, j * 1499 / 4.0};
-            const auto direction = p.truth.direction(at);
-            ASSERT_TRUE(direction);
-            const auto by = s.fit.model.pixel(*direction);
-            ASSERT_TRUE(by);
-            const double error_px = std::hypot(by->x_px - at.x_px, by->y_px - at.y_px);
-            const double sigma = s.sigma_px(*direction, *by);
-            error2 += error_px * error_px / 2;
-            sigma2 += sigma * sigma;
-            ++places;
-            most_sigmas = std::max(most_sigmas, error_px / sigma);
-          }
-        ++plates;
-        beyond += most_sigmas > 4.3;  // one in ten thousand places
-      }
-      ASSERT_GT(plates, 60);
-      std::printf(
-          "within %.1f, %+.0f px in the corners: error %.3f px, stated %.3f, %d of %d plates "
-          "beyond\n",
-          within, corner_px, std::sqrt(error2 / places), std::sqrt(sigma2 / places), beyond,
-          plates);
-      EXPECT_LE(beyond, plates / 50) << within << ' ' << corner_px;
-      EXPECT_LE(error2, 1.5 * sigma2) << within << ' ' << corner_px;
+      const StatedErrors all = stated_errors(sky, corner_px, 15, within, 100);
+      ASSERT_GT(all.plates, 60);
+      EXPECT_LE(all.beyond, all.plates / 50) << within << ' ' << corner_px;
+      EXPECT_LE(all.error2, 1.5 * all.sigma2) << within << ' ' << corner_px;
       if (within == 1.0) {
-        EXPECT_LE(std::sqrt(sigma2 / places), 0.6) << corner_px;
+        EXPECT_LE(all.sigma_px(), 0.6) << corner_px;
       }
+    }
+}
+
+// Many stars exclude what a lens may do, also in the corners that none of them is in.
+TEST(PlateSolver, PlatesOfManyStarsStateTheErrorsOfTheirFit) {
+  const PlateSky sky = test::sky_of(test::kstars());
+  for (const auto& [stars, within] : {std::pair(100, 1.0), {300, 1.0}, {300, 0.9}})
+    for (const double corner_px : {0.0, 2.0}) {
+      const StatedErrors all = stated_errors(sky, corner_px, std::size_t(stars), within, 30);
+      ASSERT_GT(all.plates, 15);
+      EXPECT_LE(all.beyond, 1) << stars << ' ' << corner_px;
+      EXPECT_LE(all.ratio(), 2.0) << stars << ' ' << within << ' ' << corner_px;
+      EXPECT_GE(all.ratio(), 0.8) << stars << ' ' << within << ' ' << corner_px;
     }
 }
 
