@@ -66,6 +66,7 @@ def main():
     options = parser.parse_args()
     parts = {"demo": from_clone, "rest": rest, "incremental": incremental}
     with tempfile.TemporaryDirectory(prefix="dmise-build-") as directory:
+        pathlib.Path(directory).chmod(0o755)  # tests run programs as a user without rights
         clone = pathlib.Path(directory) / "dmise"
         subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)
         for part in options.only or parts:

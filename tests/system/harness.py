@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -61,6 +62,18 @@ def write_scenario(directory, duration_s=3600, objects="demo", first="alpha", se
         duration_s=duration_s, objects=objects, first=first, second=second,
         on_silent_node=on_silent_node, silent_after_s=silent_after_s, network=network))
     return path
+
+
+def without_rights(binary, directory):
+    """Words before a command that let a user without rights run it, who may read `directory`; None where this user is no root, or
+    where the program or what is beside it is closed to others, as in a home."""
+    words = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+    if os.geteuid() != 0 or not shutil.which("setpriv"):
+        return None
+    directory.chmod(0o755)
+    opened = subprocess.run([*words, binary, "list", "sites"], capture_output=True).returncode == 0
+    catalogue = pathlib.Path(__file__).resolve().parents[2] / "launch/catalogues/demo.tle"
+    return words if opened and subprocess.run([*words, "test", "-r", catalogue]).returncode == 0 else None
 
 
 def session_of(pid):
