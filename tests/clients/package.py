@@ -5,6 +5,7 @@ Tests of the engine are `TEST_PROGRAM [DMISE [TEST..]]`, where a TEST is such as
 import importlib
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import unittest
@@ -14,6 +15,7 @@ SANITIZED = "DMISE_TEST_PACKAGE" in os.environ  # by tests/sanitizers/engine.sh,
 PACKAGE = os.environ.get("DMISE_TEST_PACKAGE", str(ROOT / "build/python"))
 DMISE = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/bin/dmise"
 sys.path.insert(0, PACKAGE)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's job in the background ignores
 os.environ["PATH"] = f"{DMISE.parent}:{os.environ['PATH']}"  # where the package finds the program, as an installed one does
 
 
