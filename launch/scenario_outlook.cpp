@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/printable.h"
+#include "core/config/own_node_roles.h"
 #include "launch/notes.h"
 #include "sensors/outlook/outlook_text.h"
 
@@ -18,10 +19,8 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
 std::string node_text(const Scenario& scenario, const OwnNode& node) {
   std::vector<std::string> moved, turned;
   for (const OwnObject& object : scenario.own_objects) {
-    const NodeMotion* motion = motion_by_node(object);
-    const NodeAttitude* attitude = attitude_by_node(object);
-    if (motion && motion->node == node.name) moved.push_back(object.name);
-    if (attitude && attitude->node == node.name) turned.push_back(object.name);
+    if (is_moved_by(node, object)) moved.push_back(object.name);
+    if (is_turned_by(node, object)) turned.push_back(object.name);
   }
   std::string text = "node " + node.name +
                      (node.run.empty() ? " is elsewhere"

@@ -23,6 +23,7 @@
 #include "core/config/distribution.h"
 #include "core/config/make_clock.h"
 #include "core/config/own_node_config.h"
+#include "core/config/own_node_roles.h"
 #include "core/config/scenario_draws.h"
 #include "core/config/yaml_reader.h"
 #include "core/detection/detection_json.h"
@@ -200,12 +201,8 @@ void check_own_nodes(const Scenario& scenario, const Names& models) {
 /// The names of the objects that a node moves or turns, in the scenario's order.
 std::vector<std::string> objects_of(const Scenario& scenario, const OwnNode& node) {
   std::vector<std::string> names;
-  for (const OwnObject& object : scenario.own_objects) {
-    const NodeMotion* motion = motion_by_node(object);
-    const NodeAttitude* attitude = attitude_by_node(object);
-    if ((motion && motion->node == node.name) || (attitude && attitude->node == node.name))
-      names.push_back(object.name);
-  }
+  for (const OwnObject& object : scenario.own_objects)
+    if (is_moved_by(node, object) || is_turned_by(node, object)) names.push_back(object.name);
   return names;
 }
 

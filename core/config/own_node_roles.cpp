@@ -97,6 +97,16 @@ void require_outputs(const OwnNode& node, std::initializer_list<const char*> out
 
 }  // namespace
 
+bool is_moved_by(const OwnNode& node, const OwnObject& object) {
+  const NodeMotion* motion = motion_by_node(object);
+  return motion && motion->node == node.name;
+}
+
+bool is_turned_by(const OwnNode& node, const OwnObject& object) {
+  const NodeAttitude* attitude = attitude_by_node(object);
+  return attitude && attitude->node == node.name;
+}
+
 void assign_own_nodes(Scenario& scenario) {
   std::map<std::string, std::size_t> counts;
   for (OwnObject& object : scenario.own_objects) {

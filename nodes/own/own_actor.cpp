@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/formatted.h"
+#include "core/config/own_node_roles.h"
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/interpolation_error.h"
 #include "nodes/own/joined_states.h"
@@ -15,16 +16,6 @@ constexpr Tick max_ahead = 64;                 // calls
 constexpr std::size_t states_ahead = 100'000;  // of objects: 7 MB
 constexpr std::size_t calls_held = 3;          // for joining two, and for the error between three
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
-
-bool is_turned_by(const OwnNode& node, const OwnObject& object) {
-  const NodeAttitude* attitude = attitude_by_node(object);
-  return attitude && attitude->node == node.name;
-}
-
-bool is_moved_by(const OwnNode& node, const OwnObject& object) {
-  const NodeMotion* motion = motion_by_node(object);
-  return motion && motion->node == node.name;
-}
 
 /// Number of calls that the program may be asked for before it has answered. A run that keeps time
 /// asks for each when it is due, and so does a node that hears what others say.
