@@ -208,12 +208,10 @@ double PlateSolution::sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) 
   }
   double variance = sum / weights;
   const PlateModel& model = fit.model;
-  if (model.unit_px > 0.0) {
-    const PixelPosition at = pixel - model.centre;
-    const double r = std::hypot(at.x_px, at.y_px) / model.unit_px, known = reach_px / model.unit_px;
-    const double beyond_px = left_out_px * std::max(0.0, r * r * r - known * known * known);
-    variance += 0.5 * beyond_px * beyond_px;
-  }
+  const PixelPosition at = pixel - model.centre;
+  const double r = std::hypot(at.x_px, at.y_px) / model.unit_px, known = reach_px / model.unit_px;
+  const double beyond_px = left_out_px * std::max(0.0, r * r * r - known * known * known);
+  variance += 0.5 * beyond_px * beyond_px;
   return std::sqrt(variance);
 }
 

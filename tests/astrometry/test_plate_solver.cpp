@@ -241,17 +241,26 @@ TEST(PlateSolver, PlatesOfFewStarsTellTheirErrorInTheCorners) {
     }
 }
 
-// Many stars exclude what a lens may do, also in the corners that none of them is in.
+// Many stars exclude what a lens may do, also in the corners that none of them is in. Farther out,
+// and for lenses that are known to distort, it may do more than it does here.
 TEST(PlateSolver, PlatesOfManyStarsStateTheErrorsOfTheirFit) {
+  struct Case {
+    std::size_t stars;
+    double within, corner_px, max_ratio;
+  };
+  constexpr double any = 1e9;
   const PlateSky sky = test::sky_of(test::kstars());
-  for (const auto& [stars, within] : {std::pair(100, 1.0), {300, 1.0}, {300, 0.9}})
-    for (const double corner_px : {0.0, 2.0}) {
-      const StatedErrors all = stated_errors(sky, corner_px, std::size_t(stars), within, 30);
-      ASSERT_GT(all.plates, 15);
-      EXPECT_LE(all.beyond, 1) << stars << ' ' << corner_px;
-      EXPECT_LE(all.ratio(), 2.0) << stars << ' ' << within << ' ' << corner_px;
-      EXPECT_GE(all.ratio(), 0.8) << stars << ' ' << within << ' ' << corner_px;
-    }
+  for (const auto& [stars, within, corner_px, max_ratio] :
+       {Case{100, 1.0, 0.0, 2.0}, Case{100, 1.0, 2.0, 2.0}, Case{100, 1.0, -6.0, 2.0},
+        Case{300, 1.0, 0.0, 2.0}, Case{300, 1.0, 2.0, 2.0}, Case{300, 1.0, -6.0, 2.0},
+        Case{300, 0.9, 0.0, 2.0}, Case{300, 0.9, 2.0, 2.0}, Case{300, 0.9, -6.0, any},
+        Case{100, 0.6, 0.0, any}, Case{100, 0.6, 2.0, any}, Case{100, 0.6, -6.0, any}}) {
+    const StatedErrors all = stated_errors(sky, corner_px, stars, within, 30);
+    ASSERT_GT(all.plates, 15);
+    EXPECT_LE(all.beyond, 1) << stars << ' ' << within << ' ' << corner_px;
+    EXPECT_LE(all.ratio(), max_ratio) << stars << ' ' << within << ' ' << corner_px;
+    EXPECT_GE(all.ratio(), 0.8) << stars << ' ' << within << ' ' << corner_px;
+  }
 }
 
 TEST(PlateSolver, RefusesSourcesAtRandomPlaces) {
