@@ -12,7 +12,7 @@ import numpy as np  # noqa: E402
 import pandas  # noqa: E402
 
 import dmise  # noqa: E402
-from scenarios import EAST, NIGHT, WEST, NightRun  # noqa: E402
+from scenarios import EAST, NIGHT, WEST, NightRun, check_records  # noqa: E402
 
 
 class Frames(NightRun):
@@ -43,13 +43,7 @@ class Frames(NightRun):
         for name, of_frame, of_run in (("truth", lambda f: f.truth, self.run_.truth),
                                        ("detections", lambda f: f.detections, self.run_.detections)):
             ours = np.concatenate([of_frame(f) for f in frames])
-            theirs = [record for record in of_run if record.sensor == "west"]
-            self.assertEqual(len(ours), len(theirs), name)
-            for row, record in zip(ours, theirs):
-                for field in ours.dtype.names:
-                    value = getattr(record, field)
-                    if np.size(value):
-                        np.testing.assert_array_equal(row[field], np.nan if value is None else value, err_msg=f"{name}.{field}")
+            check_records(self, ours, [record for record in of_run if record.sensor == "west"], name)
         self.assertGreater(sum(len(f.truth) for f in frames), 0)
         self.assertEqual(frames[0].report, next(r for r in self.run_.frames if r.sensor == "west"))
 

@@ -2,10 +2,8 @@
 
     engine_processes.py [DMISE [TEST..]]
 """
-import ctypes
 import gc
 import os
-import pathlib
 import signal
 import threading
 import time
@@ -17,18 +15,10 @@ package.require("numpy", "dmise.engine")
 import numpy as np  # noqa: E402
 
 import dmise  # noqa: E402
-from package import ROOT, SANITIZED, run_python  # noqa: E402
+from package import ROOT, SANITIZED, resident_mb, run_python  # noqa: E402
 from scenarios import NIGHT  # noqa: E402
 
 LARGE = NIGHT.replace("columns: 160, rows: 120", "columns: 6000, rows: 6000").replace("pixel_pitch_m: 9e-6", "pixel_pitch_m: 3e-6")
-
-
-def resident_mb():
-    """Without what has been freed and the allocator keeps, which threads that meet by chance make more or less."""
-    ctypes.CDLL(None).malloc_trim(0)
-    for line in pathlib.Path("/proc/self/status").read_text().splitlines():
-        if line.startswith("VmRSS"):
-            return int(line.split()[1]) / 1024
 
 
 class Processes(unittest.TestCase):

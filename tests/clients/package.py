@@ -2,6 +2,7 @@
 
 Tests of the engine are `TEST_PROGRAM [DMISE [TEST..]]`, where a TEST is such as Frames.test_wcs_is_astropys.
 """
+import ctypes
 import importlib
 import os
 import pathlib
@@ -33,6 +34,13 @@ def run_python(code):
     """Words that another process of Python prints."""
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
                           env={**os.environ, "PYTHONPATH": PACKAGE}).stdout.split()
+
+
+def resident_mb():
+    """Without what has been freed and the allocator keeps, which threads that meet by chance make more or less."""
+    ctypes.CDLL(None).malloc_trim(0)
+    status = pathlib.Path("/proc/self/status").read_text().splitlines()
+    return next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmRSS"))
 
 
 def main():

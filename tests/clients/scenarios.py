@@ -4,6 +4,8 @@ import subprocess
 import tempfile
 import unittest
 
+import numpy as np
+
 import dmise
 from package import DMISE
 
@@ -48,6 +50,16 @@ def drawn_sensor(name, columns, rows):
     return sensor(name, "{target: {one_of: [GOES 13, GOES 14]}, tracking: fixed}", columns=columns, rows=rows,
                   latitude_deg="{uniform: [25, 40]}", read_noise_e="{normal: {mean: 6, sigma: 1, min: 3}}",
                   bias_dn="{integers: [90, 110]}", exposure_s="{log_uniform: [1, 8]}")
+
+
+def check_records(case, rows, records, name):
+    """Rows of a table are these records of a run; `name`: of the table, for messages."""
+    case.assertEqual(len(rows), len(records), name)
+    for row, record in zip(rows, records):
+        for field in rows.dtype.names:
+            value = getattr(record, field)
+            if np.size(value):
+                np.testing.assert_array_equal(row[field], np.nan if value is None else value, err_msg=f"{name}.{field}")
 
 
 class NightRun(unittest.TestCase):

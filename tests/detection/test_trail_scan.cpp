@@ -53,7 +53,7 @@ TEST(TrailScan, PeaksClimbToTheMiddlesOfTrails) {
   EXPECT_EQ(std::count(seen.begin(), seen.end(), true), std::ptrdiff_t(seen.size()));
 }
 
-TEST(TrailScan, HasNoPeaksInAnEmptySky) {
+TEST(TrailScan, HasNoPeaksOnceTheStarsAreSubtracted) {
   Trails trails;
   for (const PixelPosition& place : trails.places) trails.residual.subtract(trails.trail_at(place));
   for (const TrailPlace& peak : trails.scan.peaks(8.0)) EXPECT_LT(peak.score, 8.0);
