@@ -188,7 +188,7 @@ void check_own_nodes(const Scenario& scenario, const Names& models) {
     if (node.role == OwnNodeRole::sensor || node.role == OwnNodeRole::tracker)
       refuse("the engine in Python runs no sensors and trackers of one's own");
     if (!node.consumes.empty()) refuse("the engine in Python lets no model hear topics");
-    if (!node.in_process)
+    if (!models.contains(node.name))
       throw ConfigError(node.where + ": its model is not given: dmise.Simulation(.., nodes={\"" +
                         node.name + "\": ..})");
   }
@@ -218,7 +218,7 @@ class Simulation {
                                         const std::vector<std::string>& nodes) {
     refuse_distributions(root, "dmise dataset draws a value for each seed");
     const Names models(nodes.begin(), nodes.end());
-    Scenario scenario = read_scenario(root, models);
+    Scenario scenario = read_scenario(root, OwnNodeModels::functions);
     if (seed) scenario.seed = *seed;
     return std::make_unique<Simulation>(std::move(scenario), models);
   }

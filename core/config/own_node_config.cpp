@@ -221,7 +221,7 @@ void read_consumes(YamlMap& map, OwnNode& node) {
     node.hears.push_back({topic.text(), topic.place()});
 }
 
-OwnNode read_own_node(const YamlValue& value, const std::set<std::string>& in_process) {
+OwnNode read_own_node(const YamlValue& value, OwnNodeModels models) {
   YamlMap map(value, own_node_section());
   OwnNode node{.where = value.place()};
   node.name = map.require("name").text();
@@ -235,9 +235,9 @@ OwnNode read_own_node(const YamlValue& value, const std::set<std::string>& in_pr
   node.is_fmu = bool(fmu);
   read_consumes(map, node);
   map.done();
-  node.in_process = in_process.contains(node.name);
-  if (node.in_process && fmu) fmu->fail("an FMU is no function of this process", false);
-  if (node.in_process) return node;
+  node.is_function = models == OwnNodeModels::functions;
+  if (node.is_function && fmu) fmu->fail("an FMU is no function of this process", false);
+  if (node.is_function) return node;
   if (int(bool(run)) + int(bool(fmu)) + int(elsewhere) != 1)
     value.fail("give either run or fmu or elsewhere: on", false);
   if (elsewhere) return node;
@@ -252,10 +252,9 @@ OwnNode read_own_node(const YamlValue& value, const std::set<std::string>& in_pr
 
 Forms own_nodes_forms() { return form::list(form::map(own_node_section)); }
 
-std::vector<OwnNode> read_own_nodes(const YamlValue& value,
-                                    const std::set<std::string>& in_process) {
+std::vector<OwnNode> read_own_nodes(const YamlValue& value, OwnNodeModels models) {
   std::vector<OwnNode> nodes;
-  for (const YamlValue& entry : value.list()) nodes.push_back(read_own_node(entry, in_process));
+  for (const YamlValue& entry : value.list()) nodes.push_back(read_own_node(entry, models));
   return nodes;
 }
 

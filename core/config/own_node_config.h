@@ -1,5 +1,4 @@
 #pragma once
-#include <set>
 #include <string>
 #include <vector>
 
@@ -28,7 +27,7 @@ struct OwnNode {
   std::vector<std::string> run;  // program and arguments; empty: somebody joins it
   std::string run_where;         // `file:line:column: nodes[0].run`
   std::string directory;         // in which it runs: that of the scenario
-  bool in_process = false;       // its model is a function of this process
+  bool is_function = false;      // of this process, which speaks for it
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
   bool is_fmu = false;                   // which moves or turns one object
@@ -42,10 +41,12 @@ struct OwnNode {
 
 /// The keys of a node, for lists of them.
 Forms own_nodes_forms();
-/// Reads `nodes:`. `in_process`: the names of those whose models are functions of this process, of
-/// which programs are ignored. Throws `ConfigError` `file:line:column: key: reason`.
-std::vector<OwnNode> read_own_nodes(const YamlValue& value,
-                                    const std::set<std::string>& in_process = {});
+/// What speaks for the models of a scenario's nodes: their programs, or functions of this process.
+enum class OwnNodeModels { programs, functions };
+
+/// Reads `nodes:`; what they run is ignored if functions speak for them. Throws `ConfigError`
+/// `file:line:column: key: reason`.
+std::vector<OwnNode> read_own_nodes(const YamlValue& value, OwnNodeModels models);
 
 /// Writes the part that determines the products, without the content of files.
 void write_own_nodes(JsonWriter& json, const std::vector<OwnNode>& nodes);

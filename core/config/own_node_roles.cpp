@@ -41,7 +41,7 @@ void give_inner_role(Scenario& scenario, const std::string& name, const std::str
   const OwnNode& node = give_role(scenario, name, where, role);
   if (node.is_fmu)
     throw ConfigError(where + ": an FMU moves or turns an object, and " + name + " is one");
-  if (node.run.empty() && !node.in_process)
+  if (node.run.empty() && !node.is_function)
     throw ConfigError(where + ": its node is elsewhere, but " + who + ": " + name + " needs run");
   if (node.period_ticks != 1)
     throw ConfigError(node.where + ".period_ticks: a " + asked + ": must be 1, got " +

@@ -251,7 +251,7 @@ Scenario load_scenario(const std::string& path) {
   return read_scenario(root);
 }
 
-Scenario read_scenario(const YamlValue& root, const std::set<std::string>& in_process) {
+Scenario read_scenario(const YamlValue& root, OwnNodeModels models) {
   YamlMap map(root, scenario_section());
   Scenario scenario;
   scenario.path = root.file();
@@ -283,7 +283,7 @@ Scenario read_scenario(const YamlValue& root, const std::set<std::string>& in_pr
       if (value.is_map())
         if (const auto name = YamlMap(value).find("name"))
           if (const auto fault = names.fault_of(name->text())) name->fail(*fault);
-    scenario.own_nodes = read_own_nodes(*nodes, in_process);
+    scenario.own_nodes = read_own_nodes(*nodes, models);
   }
   for (auto& sensor : scenario.sensors) {
     sensor.synthetic_stars_to_v_mag = scenario.synthetic_stars_to_v_mag;

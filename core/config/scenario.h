@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -251,10 +250,9 @@ struct Scenario {
 /// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got
 /// value`, also for a value that is a distribution: see `ScenarioDraws`.
 Scenario load_scenario(const std::string& path);
-/// The same for one that is parsed. `in_process`: nodes of the user's whose models are functions of
-/// this process.
+/// The same for one that is parsed.
 class YamlValue;
-Scenario read_scenario(const YamlValue& root, const std::set<std::string>& in_process = {});
+Scenario read_scenario(const YamlValue& root, OwnNodeModels models = OwnNodeModels::programs);
 
 /// Canonical JSON of everything that determines the products: the same text gives the same bytes.
 std::string physics_json(const Scenario& scenario);

@@ -120,8 +120,12 @@ class Faults(OwnModelCase):
         for nodes, given, more, words in (
                 ([good], None, {}, r"PATH:3:5: nodes\[0\]: its model is not given: dmise\.Simulation\(\.\., nodes=\{\"gnc\": \.\.\}\)"),
                 ([good], {}, {}, r"PATH:3:5: nodes\[0\]: its model is not given.*"),
+                (["name: gnc"], {}, {}, r"PATH:3:5: nodes\[0\]: its model is not given.*"),
+                (["name: gnc"], {"gcn": anyone}, {}, r"PATH:3:5: nodes\[0\]: its model is not given.*"),
+                ([good], {"g\0c": anyone}, {}, "nodes: has NUL, or a character that UTF-8 cannot encode"),
+                ([good], {"\ud800": anyone}, {}, "nodes: has NUL, or a character that UTF-8 cannot encode"),
                 (["name: spin", good], {"gnc": actor, "spin": anyone}, {}, r"PATH:3:5: nodes\[0\]: moves and turns no object.*"),
-                ([good, "name: spin"], {"gnc": actor}, {"more": ", attitude: {node: spin}"}, r"PATH:4:5: nodes\[1\]: give either run.*"),
+                ([good, "name: spin"], {"gnc": actor}, {"more": ", attitude: {node: spin}"}, r"PATH:4:5: nodes\[1\]: its model is not given: .*\{\"spin\": \.\.\}\)"),
                 ([good], {"gnc": actor, "gncc": actor}, {}, r"PATH: nodes: no node has this name, did you mean gnc\?, got gncc"),
                 ([good], {"gnc": lambda t_s, world, options: None}, {},
                  r"PATH:3:5: nodes\[0\]: its model must be what @dmise\.actor marks, got function"),

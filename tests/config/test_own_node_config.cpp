@@ -17,9 +17,9 @@ namespace {
 using test::config_error_of;
 using testing::HasSubstr;
 
-std::vector<OwnNode> read(const std::string& text) {
-  return read_own_nodes(
-      YamlMap(YamlValue::parse("nodes: " + text, "s.yaml"), scenario_section()).require("nodes"));
+std::vector<OwnNode> read(const std::string& text, OwnNodeModels models = OwnNodeModels::programs) {
+  YamlMap map(YamlValue::parse("nodes: " + text, "s.yaml"), scenario_section());
+  return read_own_nodes(map.require("nodes"), models);
 }
 std::string complaint(const std::string& text) {
   return config_error_of([&] { read(text); });
@@ -55,6 +55,19 @@ TEST(OwnNodeConfig, WhatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(complaint("[{name: gnc, run: [sh], options: {a: {b: 1}}}]"),
               HasSubstr("nodes[0].options.a: must be a number, a flag, a text"));
   EXPECT_THAT(complaint("[{name: gnc, ran: [sh]}]"), HasSubstr("did you mean run?"));
+}
+
+TEST(OwnNodeConfig, AFunctionNeedsNoProgramAndIgnoresIt) {
+  for (const char* text :
+       {"[{name: a}]", "[{name: a, run: [/none/such]}]", "[{name: a, elsewhere: on}]"}) {
+    const OwnNode node = read(text, OwnNodeModels::functions).at(0);
+    EXPECT_TRUE(node.is_function);
+    EXPECT_TRUE(node.run.empty());
+  }
+  EXPECT_FALSE(read("[{name: a, elsewhere: on}]").at(0).is_function);
+  EXPECT_THAT(config_error_of(
+                  [] { read("[{name: a, fmu: a.fmu, outputs: {}}]", OwnNodeModels::functions); }),
+              HasSubstr("an FMU is no function of this process"));
 }
 
 TEST(OwnNodeConfig, ProgramsNeedLeave) {

@@ -24,9 +24,9 @@ def source_of(scenario: Scenario) -> tuple[str | None, str]:
     if isinstance(scenario, Mapping):
         return json.dumps(_plain(scenario, ""), indent=1), "scenario"  # JSON is YAML; lines serve messages
     if isinstance(scenario, str) and "\n" in scenario:
-        return _valid(scenario), "scenario"
+        return encodable(scenario), "scenario"
     if isinstance(scenario, (str, os.PathLike)):
-        return None, _valid(os.fsdecode(scenario))
+        return None, encodable(os.fsdecode(scenario))
     raise TypeError(f"scenario: must be a path, YAML text or a mapping, got {type(scenario).__name__}")
 
 
@@ -52,9 +52,10 @@ def _parts(value: Any) -> Any:
     return value.values() if isinstance(value, dict) else value
 
 
-def _valid(text: str) -> str:
+def encodable(text: str, what: str = "scenario") -> str:
+    """The text. Raises ScenarioError for one that the engine cannot take."""
     if _NOT_UTF8.search(text):
-        raise ScenarioError("scenario: has NUL, or a character that UTF-8 cannot encode")
+        raise ScenarioError(f"{what}: has NUL, or a character that UTF-8 cannot encode")
     return text
 
 

@@ -25,7 +25,7 @@ from .engine import core, streams
 from .errors import InputError
 from .json_lines import record_of_line
 from .records import Detection, FrameReport, Record, Truth
-from .scenario_text import Scenario, seed_of, source_of
+from .scenario_text import Scenario, encodable, seed_of, source_of
 from .tables import Table, table_of
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Simulation:
         self._text, self._name = source_of(scenario)
         if nodes is not None and not isinstance(nodes, Mapping):
             raise TypeError(f"nodes: must be a mapping of names to models, got {type(nodes).__name__}")
-        names = [str(name) for name in nodes or ()]
+        names = [encodable(str(name), "nodes") for name in nodes or ()]
         if self._text is None:
             self._core = core.Simulation.of_file(self._name, seed_of(seed), names)
         else:
