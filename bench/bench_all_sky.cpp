@@ -16,16 +16,16 @@
 #include "bench/figure.h"
 #include "bench/status_memory.h"
 #include "bench/timing.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
-#include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
-#include "core/config/search_path.h"
+#include "core/config/sensors/effect_list.h"
+#include "core/config/yaml/search_path.h"
 #include "core/effects/frame_effects.h"
 #include "core/image/fits_file.h"
-#include "nodes/environment/environment_actor.h"
-#include "orbit-node/orbit_actor.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "orbit-node/load_objects.h"
+#include "sensors/frame/make_sensor.h"
+#include "sensors/objects/world_source.h"
 
 namespace dmise {
 namespace {
@@ -63,32 +63,19 @@ std::string scenario_text(const WrittenCatalogue& catalogue, const std::string& 
 
 /// Inputs of a sensor from other nodes over the exposure, computed before it starts.
 World world_of(const Scenario& scenario, Threads& threads) {
-  World world;
   const Clock clock = make_clock(scenario);
-  OrbitActor orbit(scenario, clock, threads);
-  EnvironmentActor environment(scenario, clock);
-  // A sensor has either all states, as here, or the element sets and few states.
-  ObjectRoster roster_without_elements;
-  for (Tick tick = 0; tick <= scenario.last_tick(); ++tick) {
-    const auto add = [&](const Message& message) {
-      if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
-        roster_without_elements.objects = roster->objects;
-      if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
-        world.add(std::shared_ptr<const ObjectStates>(message.state, states));
-      if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
-        world.add(std::shared_ptr<const EnvironmentState>(message.state, state));
-    };
-    for (const auto& message : orbit.step(tick, {})) add(message);
-    for (const auto& message : environment.step(tick, {})) add(message);
-  }
-  world.add(std::make_shared<const ObjectRoster>(std::move(roster_without_elements)));
-  return world;
+  const ObjectPopulation population = load_objects(scenario, clock);
+  const StateSource states(population, clock, threads);
+  const SensorConfig& sensor = scenario.sensors[0];
+  return WorldSource(scenario, sensor, clock).until(frame_times(sensor, 1), population, states);
 }
 
 /// Peak memory of this process [MB] while `work` runs, as reported by the kernel. Pages of
-/// libraries count fully: their share (PSS) depends on other processes of the machine.
+/// libraries count fully: their share (PSS) depends on other processes of the machine. Code that
+/// other nodes run, such as SGP4, does not count.
 template <class Work>
 double peak_mb(const Work& work) {
+  forget_code();
   std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets the peak
   work();
   return status_mb("VmHWM");

@@ -14,10 +14,10 @@
 #include "bench/bench_all_sky.h"
 #include "bench/figure.h"
 #include "core/base/error.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 #include "core/plan/cost_factors.h"
 #include "sensors/accuracy/scene_frames.h"
-#include "sensors/pipeline/stage_times.h"
+#include "sensors/scene/stage_times.h"
 
 namespace dmise {
 namespace {

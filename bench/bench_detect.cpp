@@ -15,11 +15,11 @@
 #include "bench/status_memory.h"
 #include "bench/timing.h"
 #include "core/base/error.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 #include "core/detection/detect.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/faint_streaks.h"
-#include "core/sky/star_cache.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/streaks/faint_streaks.h"
+#include "core/sky/stars/star_cache.h"
 
 namespace dmise {
 namespace {

@@ -15,7 +15,7 @@
 #include "bench/effect_trial.h"
 #include "bench/figure.h"
 #include "bench/whole_field.h"
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 
 namespace dmise {
 namespace {

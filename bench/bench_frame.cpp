@@ -8,11 +8,11 @@
 #include "bench/bench_all_sky.h"
 #include "bench/figure.h"
 #include "bench/timing.h"
-#include "core/detector/expose.h"
-#include "core/detector/poisson.h"
-#include "core/optics/deposit.h"
-#include "core/optics/fft.h"
-#include "sensors/pipeline/optics_stage.h"
+#include "core/detector/exposure/expose.h"
+#include "core/detector/noise/poisson.h"
+#include "core/optics/blur/deposit.h"
+#include "core/optics/waves/fft.h"
+#include "sensors/scene/optics_stage.h"
 
 namespace dmise {
 namespace {

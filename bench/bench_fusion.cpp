@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/tracking/filter.h"
-#include "core/tracking/initial_orbit.h"
+#include "core/tracking/initial/initial_orbit.h"
 #include "tests/support/tracking_trial.h"
 
 namespace dmise {

@@ -5,10 +5,10 @@
 
 #include "bench/figure.h"
 #include "bench/timing.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 #include "core/fusion/fusion.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 #include "core/tracking/propagate.h"
 #include "tests/support/fusion_trial.h"
 #include "tests/support/tracking_trial.h"

@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/base/json.h"
-#include "core/orbit/catalogue.h"
+#include "core/base/files/json.h"
 #include "core/orbit/catalogue_interpolation.h"
-#include "core/orbit/epoch.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/elements/catalogue.h"
+#include "core/orbit/elements/epoch.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 
 namespace dmise {
 namespace {

@@ -12,7 +12,7 @@
 #include "bench/figure.h"
 #include "bench/network_run.h"
 #include "core/base/error.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 #include "nodes/runtime/program/command_line.h"
 
 namespace dmise {

@@ -8,10 +8,10 @@
 #include "bench/figure.h"
 #include "bench/timing.h"
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 #include "core/materials/shapes.h"
-#include "core/optics/deposit.h"
+#include "core/optics/blur/deposit.h"
 #include "sensors/render/render_module.h"
 
 namespace dmise {

@@ -14,9 +14,9 @@
 #include "bench/status_memory.h"
 #include "bench/timing.h"
 #include "core/base/units.h"
-#include "core/sky/sky_frames.h"
-#include "core/sky/star_map_file.h"
-#include "core/sky/synthetic_stars.h"
+#include "core/frames/sky_frames.h"
+#include "core/sky/stars/star_map_file.h"
+#include "core/sky/stars/synthetic_stars.h"
 
 namespace dmise {
 namespace {

@@ -18,9 +18,9 @@
 #include "bench/timing.h"
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 #include "orbit-node/load_objects.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "sensors/frame/make_sensor.h"
 #include "sensors/survey/rendered_check.h"
 #include "sensors/survey/survey_summary.h"
 

@@ -10,7 +10,7 @@
 #include "bench/bench_tick_hosts.h"
 #include "bench/idle_nodes.h"
 #include "core/base/error.h"
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/process/log.h"
 #include "nodes/runtime/process/monotonic_clock.h"

@@ -2,6 +2,7 @@
 
 #include "bench/bench_all_sky.h"
 #include "bench/bench_calibrate.h"
+#include "bench/bench_catalogue.h"
 #include "bench/bench_cue.h"
 #include "bench/bench_detect.h"
 #include "bench/bench_effects.h"
@@ -10,6 +11,7 @@
 #include "bench/bench_fusion.h"
 #include "bench/bench_fusion_tick.h"
 #include "bench/bench_interpolation.h"
+#include "bench/bench_motion.h"
 #include "bench/bench_network.h"
 #include "bench/bench_nodes.h"
 #include "bench/bench_render.h"
@@ -30,6 +32,8 @@ std::vector<Bench> benches() {
        }},
       {"calibrate", "measures what effects cost here, for predicted seconds", bench_calibrate,
        add_calibrate_options},
+      {"catalogue", "orbits kept over days against precise ones, manoeuvres found",
+       bench_catalogue},
       {"detect", "detection against the ideal matched filter, its time and memory", bench_detect,
        add_detect_options},
       {"effects", "errors and times of planned frames over scenes drawn at random", bench_effects,
@@ -38,6 +42,8 @@ std::vector<Bench> benches() {
       {"fusion", "orbits from directions: triangulation, filter, least squares; many sensors",
        [](bool json) { return bench_fusion(json) | bench_cue(json) | bench_fusion_tick(json); }},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
+      {"motion", "objects that fly by numerical integration: against Orekit, precise orbits, time",
+       bench_motion},
       {"network", "number of sensor processes that keep up with real time, and their memory",
        bench_network, add_network_options},
       {"nodes", "ticks of runs with actors in Python", bench_nodes},

@@ -24,7 +24,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGETS = {"build_processor_s": 480, "demo_from_clone_s": 300, "test_build_processor_s": None, "tests_s": 1200, "incremental_s": 20}
-SOURCE, TEST, FILTER = "core/detection/psf_growth.cpp", "test_detection", "MeasuredPsf.*"
+SOURCE, TEST, FILTER = "core/detection/light/psf_growth.cpp", "test_detection", "MeasuredPsf.*"
 
 
 def run(clone, *command):

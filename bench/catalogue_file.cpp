@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "core/orbit/element_text.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/elements/element_text.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 
 namespace dmise {
 

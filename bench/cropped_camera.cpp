@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 
 namespace dmise {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "core/detection/catalogue_sky.h"
+#include "core/detection/known/catalogue_sky.h"
 #include "core/products/detection.h"
 #include "tests/support/simulated_frame.h"
 

@@ -6,8 +6,8 @@
 
 #include "bench/timing.h"
 #include "core/optics/projection.h"
-#include "core/sky/place_effects.h"
-#include "sensors/pipeline/sky_layer.h"
+#include "core/sky/places/place_effects.h"
+#include "sensors/light/sky_layer.h"
 
 namespace dmise {
 namespace {

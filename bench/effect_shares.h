@@ -1,6 +1,6 @@
 #pragma once
-#include "core/sky/star_catalogue.h"
-#include "sensors/pipeline/view.h"
+#include "core/sky/stars/star_catalogue.h"
+#include "sensors/scene/view.h"
 
 namespace dmise {
 

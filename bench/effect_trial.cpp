@@ -6,10 +6,10 @@
 
 #include "bench/scene_dice.h"
 #include "bench/timing.h"
-#include "core/config/effect_list.h"
-#include "core/sky/light_time.h"
-#include "sensors/pipeline/exposure_planner.h"
-#include "sensors/pipeline/objects_in_field.h"
+#include "core/config/sensors/effect_list.h"
+#include "core/sky/places/light_time.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
 namespace {
@@ -52,7 +52,7 @@ struct Planner {
   std::vector<PlannableEffect> effects() const {
     SceneFacts scene = scene_facts(sensor);
     scene.stars = stars != nullptr;
-    scene.shapes = !shapes.empty();
+    tell_shapes(scene, &shapes);
     return plannable_effects(sensor, scene);
   }
 };

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 
 namespace dmise {
 

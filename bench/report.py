@@ -62,6 +62,10 @@ PAGE = {
         "cone_61k_x_100_ms": "61,000 objects against 100 fields",
         "figure5_s": "a day of 18,470 objects over a field",
         "interpolation_order7_60s_max_mm": "objects between ticks of 60 s by order 7, the worst",
+        "flight_1000_objects_1_h_s": "a thousand objects by numerical integration, 1 h at 5 s, a core",
+        "flight_orekit_*_m": "flights of a day from Orekit's with the same forces, the worst of seven",
+        "flight_sentinel3a_day_rms_*_m": "Sentinel-3A, 24 h from a first state, root mean square, the worst of seven days",
+        "flight_jason1_day_rms_*_m": "Jason-1, of eight days",
     },
     "Tracks": {
         "filter_end_error_m": "a low orbit after 60 detections of three sites at 1 arcsec",

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/frames/vec.h"
 
 namespace dmise {

@@ -12,8 +12,8 @@
 #include "bench/status_memory.h"
 #include "bench/timing.h"
 #include "core/base/error.h"
-#include "core/orbit/sgp4_batch.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 
 namespace dmise {
 namespace {

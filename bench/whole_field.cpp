@@ -8,12 +8,12 @@
 #include "bench/scene_dice.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "sensors/accuracy/scene_frames.h"
-#include "sensors/pipeline/exposure_planner.h"
-#include "sensors/pipeline/sky_layer.h"
+#include "sensors/light/sky_layer.h"
+#include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-# Instruction sets of core/base/simd_sets.h: on x86 three, of which the machine chooses, elsewhere one.
+# Instruction sets of core/base/numeric/simd_sets.h: on x86 three, of which the machine chooses, elsewhere one.
 set(DMISE_SIMD_SETS generic)
 set(DMISE_SIMD_FLAGS_generic "")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -9,7 +9,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
 endif()
 
 # dmise_simd_sources(TARGET a.cpp ...): compiles each file once per instruction set into TARGET. Such a
-# file puts its functions into namespace dmise::DMISE_SIMD (core/base/lanes.h) and includes no header
+# file puts its functions into namespace dmise::DMISE_SIMD (core/base/numeric/lanes.h) and includes no header
 # with functions that the linker could share between the sets.
 function(dmise_simd_sources target)
   foreach(level ${DMISE_SIMD_SETS})

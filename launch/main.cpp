@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/printable.h"
-#include "launch/commands.h"
+#include "launch/command/commands.h"
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/version_text.h"
 

@@ -1,6 +1,6 @@
 #include "core/base/error.h"
-#include "launch/commands.h"
-#include "launch/make_fusion.h"
+#include "launch/command/commands.h"
+#include "launch/run/make_fusion.h"
 
 namespace dmise {
 

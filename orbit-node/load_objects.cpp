@@ -7,10 +7,11 @@
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
-#include "core/config/object_names.h"
-#include "core/orbit/catalogue.h"
-#include "core/orbit/catalogue_report.h"
-#include "core/orbit/object_facts.h"
+#include "core/config/fusion_config.h"
+#include "core/config/objects/object_names.h"
+#include "core/orbit/elements/catalogue.h"
+#include "core/orbit/elements/object_facts.h"
+#include "core/orbit/sgp4/catalogue_report.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -74,6 +75,8 @@ class Loader {
         population_.models.push_back(*model);
         add(object, 0.0);
       }
+    if (scenario_.fusion && !scenario_.fusion->catalogue_path.empty())
+      believed_elements(*scenario_.fusion, start_);
     if (const auto& fusion = scenario_.fusion)
       for (std::size_t k = 0; k < fusion->not_in_catalogue.size(); ++k) {
         const auto& where = fusion->not_in_catalogue_where;  // empty if no file has them
@@ -90,7 +93,12 @@ class Loader {
   void note(const std::string& text) { population_.notes.push_back(text); }
 
   void add(const ObjectSource& source) {
-    auto catalogue = at_key(source.where, [&] { return read_catalogue(source.path); });
+    ObjectFactsFile facts;
+    auto catalogue =
+        source.walker
+            ? CatalogueFile{.source = source.named, .elements = elements_of(*source.walker)}
+        : source.breakup ? fragments(source, facts)
+                         : at_key(source.where, [&] { return read_catalogue(source.path); });
     for (auto& e : catalogue.elements) e.name = printable(e.name);  // as displayed and published
     if (catalogue.elements.empty())
       throw ConfigError(prefix(source.where) + source.path + ": no element set could be read" +
@@ -101,7 +109,6 @@ class Loader {
       require_found(catalogue.elements, source.only[k],
                     k < source.only_where.size() ? source.only_where[k] : source.path,
                     " of " + source.path);
-    ObjectFactsFile facts;
     if (!source.facts_path.empty())
       facts = at_key(source.where, [&] { return read_object_facts(source.facts_path); });
     for (const auto& problem : facts.refused)
@@ -135,9 +142,22 @@ class Loader {
       population_.elements.push_back(e);
     }
     if (of_earlier > 0)
-      note(source.path + ": " + std::to_string(of_earlier) +
+      note(catalogue.source + ": " + std::to_string(of_earlier) +
            (of_earlier == 1 ? " element set" : " element sets") +
            " left out: catalogues listed before have the numbers; first " + first);
+  }
+
+  /// Pieces of a breakup, and the spheres that they are.
+  CatalogueFile fragments(const ObjectSource& source, ObjectFactsFile& facts) {
+    Fragments made = fragments_of(*source.breakup, scenario_.seed, start_);
+    note(describe(*source.breakup, made));
+    if (made.elements.empty())
+      throw ConfigError(prefix(source.where) + "no fragment is in orbit at the start of the run");
+    for (std::size_t k = 0; k < made.elements.size(); ++k)
+      facts.facts[made.elements[k].catalogue_number] = {
+          .dimensions_m = {2.0 * std::sqrt(made.pieces[k].area_m2 / pi)},
+          .albedo = source.sphere.albedo};
+    return {.source = source.named, .elements = std::move(made.elements)};
   }
 
   /// Notes what the shapes of models lack, and patterns of the user's that fit no object. Those
@@ -202,9 +222,11 @@ class Loader {
     const TrajectorySpan span = span_of(path);
     const SimTime end = scenario_.time_of(scenario_.last_tick());
     const auto after = [](const Tai& a, const Tai& b) { return seconds_between(b, a) > 1e-9; };
-    const std::string text = object.motion.trajectory_path + ": the trajectory of " + object.name +
-                             " spans " + span_text(path) + ", the run " + format_utc(start_) +
-                             " to " + format_utc(clock_.utc(end));
+    const auto& flight = object.motion.flight;
+    const std::string text =
+        (flight ? "the path of " : object.motion.trajectory_path + ": the trajectory of ") +
+        object.name + (flight && !flight->end.empty() ? " (" + flight->end + ")" : "") + " spans " +
+        span_text(path) + ", the run " + format_utc(start_) + " to " + format_utc(clock_.utc(end));
     if (after(clock_.tai({0}), span.stop) || after(span.start, clock_.tai(end)))
       throw ConfigError(object.where + ": " + text);
     if (!after(span.start, clock_.tai({0})) && !after(clock_.tai(end), span.stop)) return;

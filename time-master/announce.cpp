@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 
 namespace dmise {
 

@@ -1,5 +1,5 @@
 // dmise-time-master: runs the clock of one run, from the first node that joins to the last tick.
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/program.h"

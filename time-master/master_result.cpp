@@ -2,7 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "nodes/runtime/process/seconds.h"
 
 namespace dmise {

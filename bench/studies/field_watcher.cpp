@@ -6,7 +6,7 @@
 
 #include "bench/catalogue_file.h"
 #include "core/config/make_clock.h"
-#include "sensors/pipeline/states_in_field.h"
+#include "sensors/objects/states_in_field.h"
 
 namespace dmise {
 namespace {

@@ -10,11 +10,11 @@
 #include <map>
 
 #include "core/base/error.h"
-#include "core/config/material_config.h"
-#include "core/config/search_path.h"
-#include "core/detector/expected_noise.h"
-#include "core/detector/expected_signal.h"
-#include "core/detector/expose.h"
+#include "core/config/objects/material_config.h"
+#include "core/config/yaml/search_path.h"
+#include "core/detector/exposure/expected_noise.h"
+#include "core/detector/exposure/expected_signal.h"
+#include "core/detector/exposure/expose.h"
 #include "core/discrimination/aperture_fraction.h"
 #include "core/discrimination/material_likelihood.h"
 #include "core/image/fits_file.h"

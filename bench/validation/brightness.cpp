@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/least_squares.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/least_squares.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
@@ -18,6 +18,7 @@ namespace dmise {
 namespace {
 
 constexpr double bin_s = 1.0;               // of means within a track
+constexpr std::uint64_t seed = 1;           // of glints
 constexpr std::size_t least_of_a_half = 3;  // as many as a phase law has numbers
 
 struct Family {
@@ -136,6 +137,32 @@ double less_v_mag(MagnitudeSystem system) {
   return magnitude_of_light(sunlight_photons_per_s_m2(0.0, v) / ab_zero_point_photons_per_s_m2(v));
 }
 
+/// The tracks of a half.
+std::vector<PassLightCurve> curves_of(const std::vector<ComparedLight>& lights,
+                                      const std::vector<std::uint32_t>& objects, bool held_out,
+                                      const ModelLight& model) {
+  std::map<std::size_t, std::vector<std::size_t>> tracks;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (lights[i].held_out == held_out) tracks[lights[i].track].push_back(i);
+  std::vector<PassLightCurve> curves;
+  for (const auto& [track, points] : tracks) {
+    PassLightCurve curve;
+    for (const std::size_t i : points) {
+      curve.time_s.push_back(lights[i].time_s);
+      curve.measured_mag.push_back(at_range(lights[i].measured_mag, lights[i]));
+      curve.smooth_mag.push_back(at_range(lights[i].smooth_mag, lights[i]));
+    }
+    curve.glints_mag = [&lights, &objects, &model, points = points](std::uint64_t of_seed) {
+      std::vector<double> mag;
+      for (const std::size_t i : points)
+        mag.push_back(model.glints_mag(of_seed, objects[i], lights[i].to_sun, lights[i].to_viewer));
+      return mag;
+    };
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
 FamilyBrightness compare(const Family& family, const std::string& directory, std::size_t every) {
   const bool curves = family.halves == Halves::by_track;
   const std::string path = directory + "/brightness/" + family.file;
@@ -157,7 +184,9 @@ FamilyBrightness compare(const Family& family, const std::string& directory, std
       .target_scatter_mag = family.target_scatter_mag};
   if (set.lights.empty()) throw ConfigError(path + ": no measurement is in sunlight");
   const std::size_t middle_track = set.lights[(set.lights.size() - 1) / 2].track;
-  for (std::size_t i = 0; i < set.lights.size(); i += every) {
+  std::vector<ComparedLight> all;
+  std::vector<std::uint32_t> objects;
+  for (std::size_t i = 0; i < set.lights.size(); i += curves ? 1 : every) {
     const ObservedLight& seen = set.lights[i];
     const Vec<Gcrs> line = seen.observer_m - seen.scene.position_m;
     ComparedLight light{.track = seen.track,
@@ -166,8 +195,12 @@ FamilyBrightness compare(const Family& family, const std::string& directory, std
                         .range_m = norm(line),
                         .phase_rad = angle_rad(line, seen.scene.sun_m - seen.scene.position_m),
                         .held_out = curves ? seen.track % 2 == 1 : seen.track > middle_track};
-    light.predicted_mag = light_of.v_mag(seen, &light.to_sun, &light.to_viewer) + to_system_mag;
-    result.lights.push_back(light);
+    light.smooth_mag = light_of.v_mag(seen, &light.to_sun, &light.to_viewer) + to_system_mag;
+    light.predicted_mag =
+        light.smooth_mag + light_of.glints_mag(seed, seen.object, light.to_sun, light.to_viewer);
+    if (i % every == 0) result.lights.push_back(light);
+    all.push_back(light);
+    objects.push_back(seen.object);
   }
   const Chosen fitted = half_of(result.lights, false), held_out = half_of(result.lights, true);
   if (std::min(fitted.size(), held_out.size()) < least_of_a_half)
@@ -176,6 +209,10 @@ FamilyBrightness compare(const Family& family, const std::string& directory, std
                                        fitted.size(), held_out.size(), least_of_a_half));
   result.fitted = figures_of(fitted, fitted, curves);
   result.held_out = figures_of(held_out, fitted, curves);
+  if (curves) {
+    result.fitted_power = curve_power(curves_of(all, objects, false, light_of));
+    result.held_out_power = curve_power(curves_of(all, objects, true, light_of));
+  }
   if (result.target_scatter_mag == 0.0)
     result.target_scatter_mag = 1.2 * result.held_out.phase_law_scatter_mag;
   return result;
@@ -184,7 +221,16 @@ FamilyBrightness compare(const Family& family, const std::string& directory, std
 }  // namespace
 
 ModelLight::ModelLight(const ObjectModel& model)
-    : model_(model), facets_(*model.geometry.mesh, johnson_v(), false) {}
+    : model_(model), facets_(*model.geometry.mesh, johnson_v(), false) {
+  if (model.glints) glints_.emplace(*model.glints);
+}
+
+double ModelLight::glints_mag(std::uint64_t of_seed, std::uint32_t object, const Vec<Body>& to_sun,
+                              const Vec<Body>& to_viewer) const {
+  if (!glints_) return 0.0;
+  const RngKey key = glint_key(of_seed, model_.name, object);
+  return magnitude_of_light(glints_->over_smooth(key, to_sun, to_viewer));
+}
 
 double ModelLight::v_mag(const ObservedLight& light, Vec<Body>* to_sun,
                          Vec<Body>* to_viewer) const {

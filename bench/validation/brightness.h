@@ -2,9 +2,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/validation/curve_power.h"
 #include "bench/validation/observed_light.h"
-#include "core/config/object_model_config.h"
+#include "core/config/objects/object_model_config.h"
 #include "core/facets/facet_light.h"
+#include "core/facets/glints.h"
 
 namespace dmise {
 
@@ -13,6 +15,7 @@ struct ComparedLight {
   std::size_t track = 0;
   double time_s = 0.0;
   double measured_mag = 0.0, predicted_mag = 0.0;
+  double smooth_mag = 0.0;  // predicted without glints
   double range_m = 0.0, phase_rad = 0.0;
   bool held_out = false;        // from the fit of the model
   Vec<Body> to_sun, to_viewer;  // unit
@@ -41,6 +44,7 @@ struct FamilyBrightness {
   double worst_rms_m = 0.0;  // of a pass: stated ranges about its orbit
   std::vector<ComparedLight> lights;
   BrightnessFigures fitted, held_out;
+  CurvePower fitted_power, held_out_power;                   // of light curves
   double target_median_mag = 0.0, target_scatter_mag = 0.0;  // 0: 1.2 times the phase law's
 };
 
@@ -48,16 +52,21 @@ struct FamilyBrightness {
 class ModelLight {
  public:
   explicit ModelLight(const ObjectModel& model);
-  /// V (Vega), with `to_sun` and `to_viewer` of the body if they are wanted.
+  /// V (Vega) without glints, with `to_sun` and `to_viewer` of the body if they are wanted.
   double v_mag(const ObservedLight& light, Vec<Body>* to_sun = nullptr,
                Vec<Body>* to_viewer = nullptr) const;
+  /// What the small parts of an object add to it.
+  double glints_mag(std::uint64_t seed, std::uint32_t object, const Vec<Body>& to_sun,
+                    const Vec<Body>& to_viewer) const;
 
  private:
   const ObjectModel& model_;
   FacetLight facets_;
+  std::optional<GlintField> glints_;
 };
 
-/// Compares every `every`th measurement in `directory` with the shipped models. Throws
+/// Compares every `every`th measurement in `directory` with the shipped models, and all of light
+/// curves for their power. Throws
 /// `ConfigError` for a file that is not there, cannot be read or leaves nothing to judge.
 std::vector<FamilyBrightness> compare_brightness(const std::string& directory, std::size_t every);
 

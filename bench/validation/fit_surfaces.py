@@ -3,7 +3,8 @@
     dmise validate brightness --csv points.csv && fit_surfaces.py points.csv
 
 Each line of the CSV has the directions of Sun and observer in the body's axes. The fit is of magnitudes, with a loss that forgives outliers; then all
-surfaces are scaled so that the median difference of the fitted half is 0. Shapes are those of launch/models without their own
+surfaces are scaled so that the median difference of the fitted half is 0, of a model whose small parts have their share of the light: where none of
+them glints, which is most often, it is fainter than on the mean. Shapes are those of launch/models without their own
 shadows, and arrays of OneWeb and Iridium NEXT are held at the least reflectance, which is where the fit drives them. `dmise validate` judges the result,
 with shadows and by the other half. Those of Starlink were fitted to the first 294 rows of the file, which are among the 299 of the fitted half: of all
 299 each number is within a tenth of them.
@@ -61,9 +62,23 @@ def starlink():
 
 
 MODELS = {"starlink-v1.5": starlink(), "oneweb": box_wing((1, 1, 1.3), 5.5), "iridium-next": box_wing((3.1, 2.4, 1.5), 8.84)}
+# Glints of launch/models: parts in view, shares of the narrowest and the widest of six widths. fit_glints.py fits them.
+GLINTS = {"oneweb": (0.04, 0.010, 0.03), "iridium-next": (0.07, 0.0065, 0.018)}
 
 
-def fit(rows, parameters, light, less_v_mag):
+def median_of_glints_mag(parts_in_view, least, most, widths=6, objects=400_000):
+    """What glints add to the smooth magnitude in half of all directions: lobes of (1 - v)^3 at random (core/facets/glints.h)."""
+    random = np.random.default_rng(1)
+    shares = np.geomspace(least, most, widths)
+    light = np.full(objects, 1 - shares.sum())
+    for share in shares:
+        count = random.poisson(parts_in_view, objects)
+        for part in range(count.max()):
+            light += np.where(count > part, 4 * share / parts_in_view * (1 - random.random(objects)) ** 3, 0)
+    return -2.5 * np.log10(np.median(light))
+
+
+def fit(rows, parameters, light, less_v_mag, glints_mag):
     measured, range_m = rows[:, 0] - less_v_mag, rows[:, 1]
     sun, viewer = rows[:, 2:5], rows[:, 5:8]
     wanted = measured - SUN_V_MAG - 5 * np.log10(range_m)
@@ -72,7 +87,7 @@ def fit(rows, parameters, light, less_v_mag):
         return wanted + 2.5 * np.log10(light(p, sun, viewer) + 1e-4)
 
     found = least_squares(difference, [p[1] for p in parameters], bounds=([p[2] for p in parameters], [p[3] for p in parameters]), loss="soft_l1").x
-    scale = 10 ** (-0.4 * np.median(difference(found)))
+    scale = 10 ** (-0.4 * (np.median(difference(found)) - glints_mag))
     return [value if "exponent" in name else value * scale for (name, *_), value in zip(parameters, found)]
 
 
@@ -87,7 +102,8 @@ def main():
                 rows.setdefault(row["model"], []).append([float(row[column]) for column in columns])
     for name, (parameters, light) in MODELS.items():
         points = np.array(rows[name])[:: max(1, len(rows[name]) // 3000)]
-        values = fit(points, parameters, light, AB_LESS_V_MAG if name.startswith("starlink") else 0.0)
+        glints_mag = median_of_glints_mag(*GLINTS[name]) if name in GLINTS else 0.0
+        values = fit(points, parameters, light, AB_LESS_V_MAG if name.startswith("starlink") else 0.0, glints_mag)
         print(name, ", ".join(f"{parameter[0]} {value:.4f}" for parameter, value in zip(parameters, values)))
 
 

@@ -9,14 +9,14 @@
 
 #include "bench/validation/pass_orbit.h"
 #include "core/base/error.h"
+#include "core/base/files/text_fields.h"
+#include "core/base/files/text_file.h"
 #include "core/base/formatted.h"
-#include "core/base/text_fields.h"
-#include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/frames/geodesy.h"
 #include "core/orbit/two_body.h"
-#include "core/sky/shadow.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/bodies/shadow.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 
@@ -48,6 +48,7 @@ class Table {
   }
 
   std::size_t size() const { return rows_.size(); }
+  bool has(const std::string& column) const { return columns_.contains(column); }
   const std::string& text(std::size_t row, const std::string& column) const {
     const auto found = columns_.find(column);
     if (found == columns_.end()) fail(rows_[row].line, "there is no column " + column);
@@ -100,6 +101,7 @@ struct CurvePoint {
   SimTime time;
   double mag = 0.0, range_m = 0.0, phase_rad = 0.0;
   bool penumbra = false;
+  std::uint32_t object = 0;
 };
 
 /// Adds a pass to the set, or counts its points as left out.
@@ -128,6 +130,7 @@ void add_pass(const std::vector<CurvePoint>& points, const Clock& clock, double 
   for (const auto& p : points) {
     const auto state = pass->at((p.time - middle).seconds());
     ObservedLight light{.track = set.tracks,
+                        .object = p.object,
                         .measured_mag = p.mag,
                         .scene = {.time_s = p.time.seconds(),
                                   .position_m = gcrs_from_cirs * state.position_m,
@@ -202,7 +205,8 @@ ObservedSet read_light_curves(const std::string& path, double inclination_rad, d
          .mag = table.number(i, "Mag", brightest_mag, faintest_mag),
          .range_m = 1e3 * table.number(i, "Distance", least_km, most_km),
          .phase_rad = deg * table.number(i, "Phase", 0.0, 180.0),
-         .penumbra = table.number(i, "Penumbra", 0.0, 1.0) != 0.0});
+         .penumbra = table.number(i, "Penumbra", 0.0, 1.0) != 0.0,
+         .object = table.has("MMTSat") ? std::uint32_t(table.number(i, "MMTSat", 0.0, 1e9)) : 0u});
   std::vector<std::vector<CurvePoint>> in_time;
   for (auto& [track, points] : curves) {
     std::ranges::stable_sort(points, {}, &CurvePoint::time);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace dmise {
 /// A measured brightness of a satellite, and where all were.
 struct ObservedLight {
   std::size_t track = 0;      // of its set, in order of time
+  std::uint32_t object = 0;   // satellite, by a number of its set; 0: not told
   double measured_mag = 0.0;  // above the atmosphere, in the system of its set
   AttitudeScene scene;        // seconds of the set; satellite and Sun
   Vec<Gcrs> observer_m;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/least_squares.h"
+#include "core/base/numeric/least_squares.h"
 #include "core/base/units.h"
 #include "core/orbit/two_body.h"
 

@@ -2,7 +2,7 @@
 
     places.py DMISE DATA [--every N] [--json] [--section FILE]
 
-`dmise validate places` starts it. SP3 of Sentinel-3A and Jason-1 (DATA/orbits) becomes `motion: {oem}`. Cameras at sites from which
+`dmise validate places` starts it. Sentinel-3A and Jason-1 move by their SP3 (DATA/orbits), in `motion: {sp3}`. Cameras at sites from which
 the satellite is high and sunlit look where it will be: orbit, light time, aberration, refraction, optics, detector, detection. Each
 detection is compared with the direction that ERFA makes of the SP3 itself: positions by Lagrange polynomials of degree 9 in ITRS, UT1 = UTC and
 no polar motion as in the run, the light time iterated. The range is known, so the line of sight starts, and the covariance is, as
@@ -46,18 +46,18 @@ class Orbit:
     """An SP3: TAI seconds since its first state, ITRS metres."""
 
     def __init__(self, path):
-        self.times, self.positions, self.velocities = [], [], []
+        self.path = path.resolve()
+        self.times, self.positions = [], []
         for number, line in enumerate(lines_of(path), 1):
             try:
                 self.take(line)
             except ValueError as error:
                 sys.exit(f"{path}:{number}: {error}")
-        if len(self.times) < 500 or not len(self.times) == len(self.positions) == len(self.velocities):
-            sys.exit(f"{path}: must have 500 states with velocities or more, got {len(self.times)} times, {len(self.positions)} positions, "
-                     f"{len(self.velocities)} velocities")
+        if len(self.times) < 500 or len(self.times) != len(self.positions):
+            sys.exit(f"{path}: must have 500 states or more, got {len(self.times)} times, {len(self.positions)} positions")
         self.start = self.times[0]
         self.seconds = np.array([DAY_S * ((a - self.start[0]) + (b - self.start[1])) for a, b in self.times])
-        self.positions, self.velocities = np.array(self.positions), np.array(self.velocities)
+        self.positions = np.array(self.positions)
 
     def take(self, line):
         if line.startswith("%c L") and line[9:12] != "TAI":
@@ -67,8 +67,6 @@ class Orbit:
             self.times.append(erfa.dtf2d("TAI", int(y), int(mo), int(d), int(h), int(mi), float(s)))
         elif line.startswith("P"):
             self.positions.append([1e3 * float(x) for x in line[4:46].split()])
-        elif line.startswith("V"):
-            self.velocities.append([0.1 * float(x) for x in line[4:46].split()])
 
     def at(self, seconds):
         """ITRS [m] by the ten nearest states."""
@@ -76,19 +74,6 @@ class Orbit:
         t = self.seconds[k : k + 10]
         weights = [np.prod([(seconds - b) / (a - b) for b in t if b != a]) for a in t]
         return np.array(weights) @ self.positions[k : k + 10]
-
-    def oem(self, name, first, last):
-        """CCSDS OEM of the states from `first` to `last`."""
-        def stamp(k):
-            y, mo, d, (h, mi, s, f) = erfa.d2dtf("TAI", 3, *self.times[k])
-            return f"{y:04d}-{mo:02d}-{d:02d}T{h:02d}:{mi:02d}:{s:02d}.{f:03d}"
-
-        lines = ["CCSDS_OEM_VERS = 2.0", "CREATION_DATE = 2020-01-01T00:00:00", "ORIGINATOR = SP3", "META_START", f"OBJECT_NAME = {name}",
-                 f"OBJECT_ID = {name}", "CENTER_NAME = EARTH", "REF_FRAME = ITRF2014", "TIME_SYSTEM = TAI", f"START_TIME = {stamp(first)}",
-                 f"STOP_TIME = {stamp(last)}", "INTERPOLATION = HERMITE", "INTERPOLATION_DEGREE = 7", "META_STOP"]
-        for k in range(first, last + 1):
-            lines.append(stamp(k) + "".join(f" {x / 1e3:.9f}" for x in (*self.positions[k], *self.velocities[k])))
-        return "\n".join(lines) + "\n"
 
 
 def itrs_from_gcrs(tai):
@@ -130,7 +115,7 @@ def passes(orbit):
 
 SCENARIO = """simulation: {{start: {start}, duration_s: {duration}, tick_s: 5, seed: {seed}}}
 objects:
-  - {{name: target, motion: {{oem: target.oem}}, radius_m: 2, albedo: 0.3}}
+  - {{name: target, motion: {{sp3: "{sp3}"}}, radius_m: 2, albedo: 0.3}}
 sensors:
   - name: eye
     site: {{latitude_deg: {latitude}, longitude_deg: {longitude}, height_m: {height}}}
@@ -214,8 +199,8 @@ def in_sigmas(off, covariance):
 
 def make(dmise, folder, orbit, site, k, seed, every):
     start = orbit.times[k - PASS_S // 120]
-    text = SCENARIO.format(start=utc_text(start), duration=PASS_S, seed=seed, latitude=site[0], longitude=site[1], height=HEIGHT_M,
-                           cadence=CADENCE_S * every)
+    text = SCENARIO.format(sp3=orbit.path, start=utc_text(start), duration=PASS_S, seed=seed, latitude=site[0], longitude=site[1],
+                           height=HEIGHT_M, cadence=CADENCE_S * every)
     (folder / "scenario.yaml").write_text(text)
     done = subprocess.run([dmise, "run", folder / "scenario.yaml", "--out", folder / "run"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -259,7 +244,7 @@ def figure(name, value, unit, target, as_json):
 SECTION = """
 ## Places of satellites with precise orbits
 
-Sentinel-3A (December 2018) and Jason-1 (January 2003) move by their SP3, which DORIS centres state to centimetres, in `motion: {{oem}}`. A
+Sentinel-3A (December 2018) and Jason-1 (January 2003) move by their SP3, which DORIS centres state to centimetres, in `motion: {{sp3}}`. A
 camera of 3.1 arcsec a pixel exposes 0.05 s; the trail is detected in the frame. What is compared is the direction of the detection, of which
 `refraction_parallax` is removed since the range is known ([wire](wire.md#directions-of-detections)), with ERFA's of the SP3: light time, no aberration.
 
@@ -284,7 +269,6 @@ def compare(options):
             for n, (site, k) in enumerate(chosen):
                 folder = pathlib.Path(scratch) / f"{name}-{n}"
                 folder.mkdir()
-                (folder / "target.oem").write_text(orbit.oem(shown, k - 12, k + 12))
                 run = make(options.dmise, folder, orbit, site, k, n + 1, options.every)
                 pairs = [difference(detection, orbit, site) for detection in target_of(run)]
                 if not pairs:

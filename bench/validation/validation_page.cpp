@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/base/formatted.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -18,8 +19,8 @@ constexpr Colour grey{190, 190, 190}, blue{31, 119, 180}, orange{255, 127, 14};
 constexpr const char* introduction = R"(# Validation
 
 What the models give beside what the sky gave. `dmise validate` writes this page from measurements that are not part of the
-repository (`--data DIR`, else `$DMISE_DATA/validation`); it needs no network. Half of each set was not seen by the fit of the
-model that it judges.
+repository (`--data DIR`, else `$DMISE_DATA/validation`), from published figures of the sky that are in the program, and from frames that it draws;
+it needs no network. Half of each set of measurements of brightness was not seen by the fit of the model that it judges.
 )";
 
 constexpr const char* about_brightness = R"(
@@ -37,11 +38,14 @@ of no filter and about V, are compared with V itself. All are taken as above the
 - **scatter**: the standard deviation about the mean. Satellites of a family differ, so no model of the family brings it to 0.
 - **of a phase law**: the scatter that a parabola in phase leaves, fitted to the fitted half alone: what is known without a shape.
 - **between tracks**: the standard deviation of the tracks' medians (a track of single exposures is a night).
-- **within tracks**: the standard deviation of means over a second about their track's mean, the median over tracks. The models are
-  smoother than the satellites: boxes lack the small parts that glint and fade within a minute.
+- **within tracks**: the standard deviation of means over a second about their track's mean, the median over tracks.
+- **power of light curves**: the variance of the magnitude at 1000 km about its straight line within a track, in octaves of periods and of all
+  from 2 s to the track's length, as mean and median over tracks of at least 16 s. Noise of photons and of the air is white above 1 Hz; its
+  level is subtracted. The model's glints are those of 16 seeds, with noise of the same level, which is subtracted too.
+  Wanted of all periods of the held-out half: a factor of 2 either way. Few bright flares make most of a mean.
 
 This does not show: satellites or nights that the fit has not seen (many have tracks in both halves of the light curves), colours (all
-is in V), glints shorter than a second, light below 20 deg of elevation, phases and seasons that were not measured, or satellites with
+is in V), glints shorter than two seconds, light below 20 deg of elevation, phases and seasons that were not measured, or satellites with
 visors.
 )";
 
@@ -59,6 +63,27 @@ std::string row(const char* half, const BrightnessFigures& f, bool curves) {
   return text + (curves
                      ? formatted(" %.2f, %.2f |\n", f.within_measured_mag, f.within_predicted_mag)
                      : std::string(" |\n"));
+}
+
+std::string power_table(const FamilyBrightness& family, const std::string& pictures) {
+  std::string text = formatted(
+      "\nPower of light curves; the noise of a point is %.3f mag (held-out half, median):\n\n"
+      "| half | periods, s | tracks | mean: measured, model, mag2 | ratio | median: measured, "
+      "model, mag2 | ratio |\n|---|---|---|---|---|---|---|\n",
+      family.held_out_power.white_mag);
+  for (const auto& [half, power] :
+       {std::pair("fitted", &family.fitted_power), std::pair("held out", &family.held_out_power)})
+    for (const auto& b : power->bands) {
+      const std::string periods = b.longest_s > 0.0
+                                      ? formatted("%g to %g", b.shortest_s, b.longest_s)
+                                      : formatted("%g to the length", b.shortest_s);
+      text += formatted("| %s | %s | %zu | %.5f, %.5f | %.2f | %.5f, %.5f | %.2f |\n", half,
+                        periods.c_str(), b.tracks, b.measured_mean, b.model_mean,
+                        b.model_mean / b.measured_mean, b.measured_median, b.model_median,
+                        b.model_median / b.measured_median);
+    }
+  return text + "\n![Mean power of light curves](" + pictures + "/" + family.model +
+         "-power.svg)\n";
 }
 
 std::string section(const FamilyBrightness& family, const std::string& pictures) {
@@ -82,8 +107,9 @@ std::string section(const FamilyBrightness& family, const std::string& pictures)
       "tracks, "
       "mag | within tracks: measured, model, mag |\n|---|---|---|---|---|---|---|---|---|\n";
   text += row("fitted", family.fitted, curves) + row("held out", family.held_out, curves);
-  return text + "\n![Measured less predicted magnitude by phase](" + pictures + "/" + family.model +
-         ".svg)\n";
+  text += "\n![Measured less predicted magnitude by phase](" + pictures + "/" + family.model +
+          ".svg)\n";
+  return curves ? text + power_table(family, pictures) : text;
 }
 
 }  // namespace

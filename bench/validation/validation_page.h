@@ -1,6 +1,6 @@
 #pragma once
 #include "bench/validation/brightness.h"
-#include "core/image/chart.h"
+#include "core/image/charts/chart.h"
 
 namespace dmise {
 

@@ -12,7 +12,7 @@
 #include "clients/engine/engine.h"
 #include "clients/engine/interruptible.h"
 #include "core/base/formatted.h"
-#include "core/orbit/catalogue.h"
+#include "core/orbit/elements/catalogue.h"
 #include "core/propagation/catalogue_states.h"
 #include "core/time/iso8601.h"
 

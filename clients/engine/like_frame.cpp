@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/sky/atmospheric_refraction.h"
+#include "core/sky/places/atmospheric_refraction.h"
 
 namespace dmise {
 namespace {

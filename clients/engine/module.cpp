@@ -6,7 +6,7 @@
 #include "clients/engine/engine.h"
 #include "core/base/detached_work.h"
 #include "core/base/version.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 
 namespace nb = nanobind;
 

@@ -12,7 +12,7 @@
 #include "clients/engine/arrays.h"
 #include "clients/engine/engine.h"
 #include "clients/engine/interruptible.h"
-#include "launch/dataset_digest.h"
+#include "launch/dataset/dataset_digest.h"
 #include "sensors/dataset/frame_labels.h"
 #include "sensors/dataset/sample_maker.h"
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/sky/apparent.h"
-#include "core/sky/star_map.h"
+#include "core/sky/places/apparent.h"
+#include "core/sky/stars/star_map.h"
 
 namespace dmise {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/astrometry/normal_equations.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 
 namespace dmise {
 namespace {

@@ -85,7 +85,8 @@ CalibratedDetector::Result CalibratedDetector::detect_calibrated(const Frame& fr
   const PixelMask* unusable = frame.unusable.pixels.empty() ? nullptr : &frame.unusable;
   const UnknownFacts& unknown = frame.header.unknown;
   const auto detected_by = [&](const FrameHeader& header) {
-    return dmise::detect(frame.counts, header, unusable, threads, sky_ ? &*sky_ : nullptr);
+    return dmise::detect(frame.counts, header, unusable, threads, sky_ ? &*sky_ : nullptr,
+                         settings);
   };
   Result result{
       .detection = {}, .header = frame.header, .solution = std::nullopt, .notes = frame.notes};

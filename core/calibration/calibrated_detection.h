@@ -25,6 +25,8 @@ class CalibratedDetector {
   /// detection; may complete the header.
   std::function<void(const CountImage&, FrameHeader&)> after_solution;
 
+  DetectSettings settings;
+
   /// Detects by the header if the frame's stars are where it says. If they are elsewhere, or if the
   /// header lacks what expecting them needs, solves the frame near the header's pointing and
   /// detects by the solution, if there is one. If `blind`, solves it without the header's pointing,

@@ -2,7 +2,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/detection/components.h"
+#include "core/detection/pixels/components.h"
 
 namespace dmise {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/quantile.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/quantile.h"
+#include "core/base/numeric/rng.h"
 #include "core/detector/hot_pixels.h"
 
 namespace dmise {

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detection/components.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/psf_measure.h"
-#include "core/detection/scene.h"
-#include "core/detection/source_fit.h"
+#include "core/detection/frame_scene.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/source/scene.h"
+#include "core/detection/source/source_fit.h"
 
 namespace dmise {
 namespace {
@@ -40,9 +39,7 @@ MeasuredStars light_by_psf(const Frame& frame, const FrameHeader& header,
               header.detector && header.detector->blooming,
               PsfField::gaussian(fwhm_px),
               frame.unusable.pixels.empty() ? nullptr : &frame.unusable};
-  scene.use(measure_psf(
-      scene, find_components(counts, background, scene.sigma_px, detection_limits::connect_snr,
-                             detection_limits::seed_snr, threads)));
+  use_psf_of_stars(scene, threads);
   MeasuredStars out{{sources.begin(), sources.end()},
                     scene.psf.stars > 0 && !is_crowded(scene, sources.size())};
   if (!out.by_psf) return out;

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/files/json.h"
 #include "core/base/formatted.h"
-#include "core/base/json.h"
 #include "core/base/units.h"
 #include "core/calibration/star_photometry.h"
 #include "core/calibration/star_sources.h"
-#include "core/detection/atmosphere.h"
+#include "core/detection/known/atmosphere.h"
 #include "core/frames/quaternion.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"

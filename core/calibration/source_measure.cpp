@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 
 namespace dmise {
 

@@ -5,9 +5,9 @@
 #include "core/astrometry/plate_match.h"
 #include "core/base/image.h"
 #include "core/calibration/star_sources.h"
-#include "core/detection/background.h"
-#include "core/detection/components.h"
-#include "core/detection/trail_fit.h"
+#include "core/detection/light/trail_fit.h"
+#include "core/detection/pixels/background.h"
+#include "core/detection/pixels/components.h"
 
 namespace dmise {
 

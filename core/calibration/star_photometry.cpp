@@ -6,10 +6,11 @@
 #include <functional>
 #include <vector>
 
-#include "core/base/quantile.h"
-#include "core/detection/star_motion.h"
+#include "core/base/numeric/quantile.h"
+#include "core/detection/known/star_motion.h"
 #include "core/optics/camera.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
+#include "core/sky/variables/variable_stars.h"
 
 namespace dmise {
 namespace {
@@ -106,6 +107,7 @@ std::vector<Candidate> candidates_of(const Frame& frame, const PlateSolution& pl
     const SeenStar& star = plate.stars[plate.matches[k].star];
     // A colour term by B-V is not that of red dwarfs and giants of type M.
     if (sky.map().stars.colour(star.index).kind != StarKind::most) continue;
+    if (sky.map().variables && sky.map().variables->find(star.index)) continue;
     const PixelPosition at{source.x_px, source.y_px};
     const double light = relative_illumination(optics, at);
     if (!(light > 0)) continue;

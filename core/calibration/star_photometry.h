@@ -10,8 +10,8 @@ namespace dmise {
 
 /// Zero point of a frame from the catalogue's stars that its plate shows. Stars take part by the
 /// light that the catalogue leads to expect, never by the light measured, which would select those
-/// that noise brightens; stars on which others shine are left out, the light that a lens with a
-/// table loses is added. Empty without an exposure or a star.
+/// that noise brightens; variable stars, and stars on which others shine, are left out, the light
+/// that a lens with a table loses is added. Empty without an exposure or a star.
 std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
                                        const MeasuredStars& light, const PlateSky& sky);
 

@@ -6,16 +6,16 @@
 #include <optional>
 #include <span>
 
-#include "core/base/golden_section.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/golden_section.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/deblend.h"
 #include "core/calibration/source_measure.h"
-#include "core/detection/background.h"
-#include "core/detection/components.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/psf_measure.h"
-#include "core/detection/trailed_stars.h"
+#include "core/detection/frame_scene.h"
+#include "core/detection/pixels/background.h"
+#include "core/detection/pixels/components.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/stars/trailed_stars.h"
 
 namespace dmise {
 namespace {
@@ -140,9 +140,7 @@ std::vector<PlateSource> sources_of_trails(const CountImage& counts,
               false,
               PsfField::gaussian(fwhm_px)};
   if (!stars_trail(scene)) return {};
-  scene.use(measure_psf(
-      scene, find_components(counts, background, scene.sigma_px, detection_limits::connect_snr,
-                             detection_limits::seed_snr, threads)));
+  use_psf_of_stars(scene, threads);
   std::vector<PlateSource> sources;
   for (const TrailedStar& star : find_trailed_stars(scene))
     if (star.trail.flux_e > settings.least_snr * star.flux_sigma_e)

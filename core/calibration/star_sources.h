@@ -5,7 +5,7 @@
 #include "core/astrometry/plate_match.h"
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/detection/star_motion.h"
+#include "core/detection/known/star_motion.h"
 
 namespace dmise {
 

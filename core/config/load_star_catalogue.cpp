@@ -1,10 +1,10 @@
 #include "core/config/load_star_catalogue.h"
 
 #include "core/base/error.h"
-#include "core/base/user_directories.h"
-#include "core/config/search_path.h"
+#include "core/base/files/user_directories.h"
 #include "core/config/star_catalogues.h"
-#include "core/sky/shared_star_map.h"
+#include "core/config/yaml/search_path.h"
+#include "core/sky/stars/shared_star_map.h"
 
 namespace dmise {
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "core/sky/star_map.h"
+#include "core/sky/stars/star_map.h"
 
 namespace dmise {
 

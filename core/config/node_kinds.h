@@ -12,7 +12,7 @@ inline constexpr const char *orbit_node = "orbit-node", *environment_node = "env
                             *any_sensor = "sensor", *any_own_node = "own-node";
 
 /// A kind of node of a run. To add one: write its participant and its program, give it a row here
-/// and a maker in launch/node_makers.cpp, and a service in launch/stack/compose.yaml.
+/// and a maker in launch/run/node_makers.cpp, and a service in launch/stack/compose.yaml.
 struct NodeKind {
   const char* name;                 // node name, unless each sensor or own node is one
   const char* program;              // in the directory of the command

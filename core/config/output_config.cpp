@@ -1,6 +1,6 @@
 #include "core/config/output_config.h"
 
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/bound_key.h"
 
 namespace dmise {
 namespace {
@@ -31,15 +31,19 @@ const Section& output_section() {
       "Files of every frame.",
       {optional("fits", form::flag() | form::map(fits_section),
                 "Whether each frame is written as FITS.", "on"),
-       optional("saturation", form::flag(),
-                "Writes flags of saturated pixels as a second image of the FITS file.", "off"),
-       optional("png", form::flag(), "Whether previews are written, plain and marked.", "on"),
-       optional("truth", form::flag(), "Whether `truth.jsonl` says what was drawn into each frame.",
-                "on"),
-       optional("star_truth", form::flag(),
-                "Writes `frame-NNNNNN.stars.csv` with every star that was drawn.", "off"),
-       optional("preview_width_px", form::integer(16, 32768),
-                "Greatest width of a preview [px]. Wider frames are shrunk.", "1663"),
+       bound<&OutputConfig::saturation>(
+           "saturation", form::flag(),
+           "Writes flags of saturated pixels as a second image of the FITS file."),
+       bound<&OutputConfig::png>("png", form::flag(),
+                                 "Whether previews are written, plain and marked."),
+       bound<&OutputConfig::truth>("truth", form::flag(),
+                                   "Whether `truth.jsonl` says what was drawn into each frame."),
+       bound<&OutputConfig::star_truth>(
+           "star_truth", form::flag(),
+           "Writes `frame-NNNNNN.stars.csv` with every star and planet that was drawn."),
+       bound<&OutputConfig::preview_width_px>(
+           "preview_width_px", form::integer(16, 32768),
+           "Greatest width of a preview [px]. Wider frames are shrunk."),
        optional("radiance_exr", form::flag() | form::map(radiance_section),
                 "Writes `frame-NNNNNN-radiance.exr`, the light at the aperture.", "off"),
        optional("planes", form::list(form::choice({"sources", "background", "noise"})),
@@ -65,13 +69,9 @@ OutputConfig read_output(const YamlValue& value) {
       output.fits = fits->flag();
     }
   }
-  const auto saturation = map.find("saturation");
-  if (saturation) output.saturation = saturation->flag();
-  if (output.saturation && !output.fits) saturation->fail("is stored in the FITS file: needs fits");
-  output.png = map.flag_or("png", true);
-  output.truth = map.flag_or("truth", true);
-  output.star_truth = map.flag_or("star_truth", false);
-  output.preview_width_px = static_cast<int>(map.integer_or("preview_width_px", 1663));
+  read_bound(map, output);
+  if (output.saturation && !output.fits)
+    map.require("saturation").fail("is stored in the FITS file: needs fits");
   if (const auto radiance = map.find("radiance_exr")) {
     if (radiance->is_map()) {
       YamlMap how(*radiance, radiance_section());

@@ -1,10 +1,12 @@
-#include "core/base/json.h"
-#include "core/config/effect_list.h"
-#include "core/config/exclusion_config.h"
-#include "core/config/instrument_config.h"
-#include "core/config/optics_config.h"
-#include "core/config/pointing_config.h"
+#include <cmath>
+
+#include "core/base/files/json.h"
 #include "core/config/scenario.h"
+#include "core/config/sensors/effect_list.h"
+#include "core/config/sensors/exclusion_config.h"
+#include "core/config/sensors/instrument_config.h"
+#include "core/config/sensors/optics_config.h"
+#include "core/config/sensors/pointing_config.h"
 #include "core/config/surroundings_json.h"
 
 namespace dmise {
@@ -38,6 +40,16 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.field("adc_bits", d.adc_bits).field("band", camera.band.name);
   json.field("band_centre_m", camera.band.centre_m).field("band_width_m", camera.band.width_m);
   write_curve(json, "band_response", camera.band.response);
+  if (!camera.filters.empty()) {
+    json.key("filters").begin_array();
+    for (const Filter& filter : camera.filters) {
+      json.begin_object().field("name", filter.band.name).field("centre_m", filter.band.centre_m);
+      json.field("width_m", filter.band.width_m);
+      write_curve(json, "response", filter.band.response);
+      json.end_object();
+    }
+    json.end_array();
+  }
   if (camera.magnitudes.system != MagnitudeSystem::v_solar)
     json.field("magnitude_system", magnitude_system_name(camera.magnitudes.system))
         .field("solar_colour_mag", camera.magnitudes.solar_colour_mag);
@@ -76,6 +88,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   }
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
   if (!s.detect) json.field("detection", false);
+  if (s.light_curves) json.field("light_curves", true);
   if (s.detector) json.field("detector", s.detector->node);
   if (!s.recorded_plans.empty()) {
     json.key("recorded_plans").begin_object();
@@ -107,6 +120,8 @@ void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
     json.field("pointing_sigma_arcsec", s.pointing_sigma_arcsec);
   json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
   if (!fusion.node.empty()) json.field("node", fusion.node);
+  if (!fusion.catalogue_path.empty()) json.field("catalogue", true);
+  if (fusion.age_days) json.field("age_days", *fusion.age_days);
   json.list("not_in_catalogue", fusion.not_in_catalogue).end_object();
 }
 
@@ -126,8 +141,11 @@ std::string physics_json(const Scenario& scenario) {
   json.field("site_every_s", scenario.environment.site_every_s).end_object();
   json.key("stars").begin_object().field("catalogue", scenario.star_catalogue_named);
   json.field("faintest_mag", scenario.faintest_star_mag);
-  if (scenario.synthetic_stars_to_v_mag)
-    json.field("synthetic_to", *scenario.synthetic_stars_to_v_mag);
+  if (const auto& to_v_mag = scenario.synthetic_stars_to_v_mag; to_v_mag && std::isinf(*to_v_mag))
+    json.field("synthetic_to", "limit");
+  else if (to_v_mag)
+    json.field("synthetic_to", *to_v_mag);
+  if (!scenario.star_variables_path.empty()) json.field("variables", true);
   json.end_object();
   json.key("sensors").begin_array();
   for (const auto& sensor : scenario.sensors) write_sensor(json, sensor);

@@ -5,20 +5,23 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/config/distribution.h"
-#include "core/config/effects_config.h"
+#include "core/config/fly_objects.h"
 #include "core/config/fusion_config.h"
-#include "core/config/interpolation_choice.h"
 #include "core/config/node_names.h"
 #include "core/config/output_config.h"
 #include "core/config/own_node_roles.h"
+#include "core/config/place_deputies.h"
+#include "core/config/scenario_text.h"
 #include "core/config/schema.h"
-#include "core/config/search_path.h"
-#include "core/config/sensor_config.h"
+#include "core/config/sensors/effects_config.h"
+#include "core/config/sensors/interpolation_choice.h"
+#include "core/config/sensors/sensor_config.h"
 #include "core/config/star_catalogues.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/bound_key.h"
+#include "core/config/yaml/distribution.h"
+#include "core/config/yaml/search_path.h"
 #include "core/orbit/interpolation_error.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 
@@ -55,11 +58,16 @@ const Section& stars_section() {
                 "tycho2` makes it), or a file: HYG in CSV, "
                 "Yale BSC5, kstars' own form, or an index that `dmise catalogue index` has made.",
                 default_star_catalogue),
+       optional("variables", form::text(),
+                "The General Catalogue of Variable Stars (`gcvs5.txt`, or `gcvs_cat.dat` of CDS "
+                "B/gcvs). Its stars then have the brightness of the instant. Without it all are "
+                "constant."),
        optional("faintest_mag", form::number(-2.0, 30.0),
                 "Faintest star of the catalogue that is drawn [V mag].", "9.5"),
-       optional("synthetic_to", form::number(0.0, 21.0),
+       optional("synthetic_to", form::number(0.0, 21.0) | form::choice({"limit", "off"}),
                 "Where the catalogue ends, stars go on by counts to this magnitude [V mag]; "
-                "without it there are none.")}};
+                "`limit`: to the faintest that stands out of a frame's noise.",
+                "off")}};
   return section;
 }
 
@@ -67,10 +75,11 @@ const Section& environment_section() {
   static const Section section{
       "environment",
       "How often the environment node publishes.",
-      {optional("common_every_s", form::number(0.0, 3600.0),
-                "Interval of Sun, Moon and Earth [s]. 0: every tick.", "0"),
-       optional("site_every_s", form::number(0.0, 3600.0), "Interval of each site's weather [s].",
-                "60")}};
+      {bound<&EnvironmentConfig::common_every_s>(
+           "common_every_s", form::number(0.0, 3600.0),
+           "Interval of Sun, Moon and Earth [s]. 0: every tick."),
+       bound<&EnvironmentConfig::site_every_s>("site_every_s", form::number(0.0, 3600.0),
+                                               "Interval of each site's weather [s].")}};
   return section;
 }
 
@@ -78,25 +87,28 @@ const Section& network_section() {
   static const Section section{
       "network",
       "How the processes of a launched run work together.",
-      {optional("window_ticks", form::integer(1, 10000),
-                "Ticks by which a node may run ahead of the slowest.", "4"),
-       optional("on_silent_node", form::choice({"fail", "wait", "drop", "restart"}),
-                "What is done about a node that does not answer.", "fail"),
-       optional("silent_after_s", form::number(0.1, 3600.0),
-                "Time without an answer after which a node is silent [s].", "5"),
-       optional("restarts", form::integer(1, 1000000),
-                "Most restarts of a node, with `on_silent_node: restart`.", "5"),
-       optional("real_time", form::number(0.0, 1e6),
-                "Simulated seconds per second of wall-clock time. 0: as fast as possible.", "0"),
-       optional("join_within_s", form::number(0.1, 86400.0),
-                "Time within which all nodes must have joined [s].", "30"),
-       optional("publish_states", form::flag(),
-                "Publishes states of all objects for subscribers that are not nodes of the "
-                "scenario.",
-                "on"),
-       optional("sensors_propagate", form::flag(),
-                "Sensors propagate the objects in their field. Off: they take published states.",
-                "on")}};
+      {bound<&NetworkConfig::window_ticks>("window_ticks", form::integer(1, 10000),
+                                           "Ticks by which a node may run ahead of the slowest."),
+       bound<&NetworkConfig::on_silent_node>("on_silent_node",
+                                             form::choice({"fail", "wait", "drop", "restart"}),
+                                             "What is done about a node that does not answer."),
+       bound<&NetworkConfig::silent_after_s>(
+           "silent_after_s", form::number(0.1, 3600.0),
+           "Time without an answer after which a node is silent [s]."),
+       bound<&NetworkConfig::restarts>("restarts", form::integer(1, 1000000),
+                                       "Most restarts of a node, with `on_silent_node: restart`."),
+       bound<&NetworkConfig::real_time>(
+           "real_time", form::number(0.0, 1e6),
+           "Simulated seconds per second of wall-clock time. 0: as fast as possible."),
+       bound<&NetworkConfig::join_within_s>("join_within_s", form::number(0.1, 86400.0),
+                                            "Time within which all nodes must have joined [s]."),
+       bound<&NetworkConfig::publish_states>(
+           "publish_states", form::flag(),
+           "Publishes states of all objects for subscribers that are not nodes of the "
+           "scenario."),
+       bound<&NetworkConfig::sensors_propagate>(
+           "sensors_propagate", form::flag(),
+           "Sensors propagate the objects in their field. Off: they take published states.")}};
   return section;
 }
 
@@ -168,6 +180,26 @@ void set_interpolation(Scenario& scenario, YamlMap simulation) {
             limit(HermiteOrder::septic) + ", in runs of that many ticks)");
 }
 
+/// Warns of objects and models that turn too fast for the ticks.
+void warn_of_attitudes(Scenario& scenario) {
+  const auto warn = [&](const AttitudeConfig& attitude) {
+    const auto warning = coarse_tick_warning(attitude, scenario.tick.seconds());
+    if (warning && std::ranges::find(scenario.warnings, *warning) == scenario.warnings.end())
+      scenario.warnings.push_back(*warning);
+  };
+  for (const auto& object : scenario.own_objects)
+    if (object.attitude) warn(*object.attitude);
+  for (const auto& [pattern, model] : models_of(scenario.objects).rules()) warn(model->attitude);
+}
+
+/// Nothing: there are none; infinity: they go to each frame's limit.
+std::optional<double> read_synthetic_to(YamlMap& map) {
+  const auto to = map.find("synthetic_to");
+  if (to && to->is_like_number()) return to->number();
+  if (!to || to->choice() == "off") return std::nullopt;
+  return unbounded;
+}
+
 void read_stars(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value, stars_section());
   const auto catalogue = map.find("catalogue");
@@ -178,30 +210,24 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
   scenario.star_catalogue_path = file ? find_catalogue(file) : where.existing_file();
   if (scenario.star_catalogue_path.empty())
     where.fail(missing_star_catalogue(scenario.star_catalogue_named));
+  if (const auto variables = map.find("variables")) {
+    scenario.star_variables_path = variables->existing_file();
+    scenario.star_variables_where = variables->place();
+  }
   scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5);
-  if (const auto to = map.find("synthetic_to")) scenario.synthetic_stars_to_v_mag = to->number();
+  scenario.synthetic_stars_to_v_mag = read_synthetic_to(map);
   map.done();
 }
 
 void read_environment(const YamlValue& value, EnvironmentConfig& environment) {
   YamlMap map(value, environment_section());
-  environment.common_every_s = map.number_or("common_every_s", 0.0);
-  environment.site_every_s = map.number_or("site_every_s", 60.0);
+  read_bound(map, environment);
   map.done();
 }
 
 void read_network(const YamlValue& value, NetworkConfig& network) {
   YamlMap map(value, network_section());
-  network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4));
-  if (const auto policy = map.find("on_silent_node"))
-    network.on_silent_node = policy->chosen(
-        {OnSilentNode::fail, OnSilentNode::wait, OnSilentNode::drop, OnSilentNode::restart});
-  network.silent_after_s = map.number_or("silent_after_s", 5.0);
-  network.restarts = static_cast<int>(map.integer_or("restarts", 5));
-  network.real_time = map.number_or("real_time", 0.0);
-  network.join_within_s = map.number_or("join_within_s", 30.0);
-  network.publish_states = map.flag_or("publish_states", true);
-  network.sensors_propagate = map.flag_or("sensors_propagate", true);
+  read_bound(map, network);
   map.done();
 }
 
@@ -245,10 +271,21 @@ const Section& scenario_section() {
   return section;
 }
 
-Scenario load_scenario(const std::string& path) {
-  const YamlValue root = YamlValue::load(path);
+namespace {
+
+Scenario without_distributions(const YamlValue& root) {
   refuse_distributions(root, "dmise dataset draws a value for each seed");
   return read_scenario(root);
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& path) {
+  return without_distributions(YamlValue::load(path));
+}
+
+Scenario scenario_of_text(const std::string& text, const std::string& name) {
+  return without_distributions(YamlValue::parse(text, name));
 }
 
 Scenario read_scenario(const YamlValue& root, OwnNodeModels models) {
@@ -262,6 +299,7 @@ Scenario read_scenario(const YamlValue& root, OwnNodeModels models) {
     scenario.own_objects = std::move(read.own);
     for (const auto& object : scenario.own_objects)
       for (const auto& line : object.motion.warnings) scenario.warnings.push_back(line);
+    warn_of_attitudes(scenario);
   }
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
   EffectSet effects;
@@ -308,6 +346,8 @@ Scenario read_scenario(const YamlValue& root, OwnNodeModels models) {
   if (scenario.output.positions_enu && !scenario.earth.origin)
     throw ConfigError(scenario.output.positions_where + ": enu needs simulation.origin");
   map.done();
+  fly_objects(scenario);
+  place_deputies(scenario);
   return scenario;
 }
 

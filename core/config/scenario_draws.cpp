@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/config/schema.h"
-#include "core/config/yaml_limits.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_limits.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

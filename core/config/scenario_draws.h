@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/config/distribution.h"
 #include "core/config/scenario.h"
+#include "core/config/yaml/distribution.h"
 
 namespace dmise {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/files/json.h"
+#include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
-#include "core/base/json.h"
-#include "core/base/text_fields.h"
-#include "core/config/camera_config.h"
-#include "core/config/material_config.h"
-#include "core/config/sensor_config.h"
+#include "core/config/objects/material_config.h"
+#include "core/config/sensors/camera_config.h"
+#include "core/config/sensors/sensor_config.h"
 
 namespace dmise {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/config/section.h"
+#include "core/config/yaml/section.h"
 
 namespace dmise {
 

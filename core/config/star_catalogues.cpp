@@ -1,6 +1,6 @@
 #include "core/config/star_catalogues.h"
 
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 
 namespace dmise {
 

@@ -1,5 +1,7 @@
 #include "core/config/surroundings_json.h"
 
+#include <type_traits>
+
 namespace dmise {
 namespace {
 
@@ -10,9 +12,16 @@ void write_sky(JsonWriter& json, const SkyConfig& sky) {
   std::vector<std::string_view> parts;
   if (p.uniform) parts.push_back("uniform");
   SkyPartEffects::for_each([&]<class Part>() {
-    if (p.*sky_part<Part>) parts.push_back(Part::facts.name);
+    if (p.*sky_part<Part> && !std::is_same_v<Part, ThermalSky> && !std::is_same_v<Part, Daylight>)
+      parts.push_back(Part::facts.name);
   });
   json.list("parts", parts);
+  // Scenarios from before the thermal sky keep their digests.
+  if (!p.thermal_sky && !sky.preset.empty() && sky.preset != "space")
+    json.field("thermal_sky", false);
+  // Skies have daylight and twilight or none unless a scenario says so: older digests stay.
+  if (p.daylight.has_value() != p.twilight.has_value())
+    json.field("daylight", p.daylight.has_value());
   if (p.airglow) json.field("airglow", p.airglow->zenith_v_mag_per_arcsec2);
   if (p.airglow && p.airglow->solar_flux_sfu)
     json.field("solar_flux_sfu", *p.airglow->solar_flux_sfu);
@@ -77,6 +86,9 @@ void write_surroundings(JsonWriter& json, const SensorConfig& sensor) {
     json.list("wind_m_per_s", {wind.ground_m_per_s, wind.jet_m_per_s});
     json.end_object();
   }
+  if (a.aerosol_optical_depth) json.field("aerosol_optical_depth", *a.aerosol_optical_depth);
+  if (a.angstrom_exponent) json.field("angstrom_exponent", *a.angstrom_exponent);
+  if (a.ground_albedo) json.field("ground_albedo", *a.ground_albedo);
   json.end_object();
   const WeatherConfig& w = sensor.weather;
   json.key("weather").begin_object();

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/config/scenario.h"
 
 namespace dmise {

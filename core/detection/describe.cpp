@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/base/units.h"
-#include "core/detection/aberration.h"
-#include "core/detection/atmosphere.h"
-#include "core/detection/mid_exposure.h"
-#include "core/detection/refraction_parallax.h"
+#include "core/detection/known/aberration.h"
+#include "core/detection/known/atmosphere.h"
+#include "core/detection/known/mid_exposure.h"
+#include "core/detection/known/refraction_parallax.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -281,6 +281,13 @@ Detection describe(const SourceLine& source, const FrameHeader& header) {
   return d;
 }
 
+/// Variance of a streak's length; 0 where it was not fitted.
+double length_variance_px2(const Source& source) {
+  if (!(source.free & trail_length)) return 0.0;
+  const int at = std::popcount(source.free & (unsigned(trail_length) - 1));
+  return std::max(source.fit.cov(at, at), 0.0);
+}
+
 /// Error of a point of a line, of which those of centroid and ends are known.
 std::array<double, 3> covariance_between(const SourceLine& source, double r) {
   const auto& end = source.ends[r < 0 ? 0 : 1].covariance_px2;
@@ -342,6 +349,31 @@ Detection describe(const MeasuredSource& source, const FrameHeader& header, bool
     };
   }
   return describe(measured, header);
+}
+
+void describe_light(const Source& source, MeasuredCurve measured, const FrameHeader& header,
+                    Detection& d) {
+  const double length_px = source.trail().length_px;
+  if (is_end1(line_point(source, 1).place, line_point(source, -1).place))
+    measured.curve = reversed(measured.curve, length_px);
+  LightCurve& curve = d.light_curve.emplace(std::move(measured.curve));
+  for (const double along_px : curve.along_px) {
+    const double share = along_px / length_px;
+    const double y_px = d.end1_y_px + share * (d.end2_y_px - d.end1_y_px);
+    curve.time_s.push_back(share * header.exposure_s + row_delay(header, y_px).seconds());
+  }
+  if (!curve.period) return;
+  LightPeriod& period = *curve.period;
+  // The exposure's ends are anywhere in the dark beyond those of the light.
+  const double first_px = measured.dark_first_px, last_px = measured.dark_last_px;
+  const double whole_px = length_px + 0.5 * (first_px + last_px);
+  // The fit of even light misses either end of uneven light by about half a FWHM, a bin.
+  const double variance_px2 = length_variance_px2(source) + curve.bin_px * curve.bin_px / 2 +
+                              (first_px * first_px + last_px * last_px) / 12;
+  const double moving_s = (d.end2_time - d.end1_time).seconds();
+  period.period_s = period.period_px / whole_px * std::max(moving_s, 0.0);
+  period.period_sigma_s = period.period_s * std::hypot(period.period_sigma_px / period.period_px,
+                                                       std::sqrt(variance_px2) / whole_px);
 }
 
 void add_detection(Detection d, const FrameHeader& header, std::vector<Detection>& detections) {

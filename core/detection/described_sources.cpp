@@ -5,10 +5,10 @@
 #include <span>
 #include <tuple>
 
-#include "core/detection/background.h"
 #include "core/detection/describe.h"
-#include "core/detection/detection_limits.h"
 #include "core/detection/make_report.h"
+#include "core/detection/pixels/background.h"
+#include "core/detection/pixels/detection_limits.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {

@@ -3,25 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "core/detection/background.h"
-#include "core/detection/components.h"
+#include "core/detection/curve/light_curve.h"
 #include "core/detection/describe.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/faint_ends.h"
-#include "core/detection/faint_streaks.h"
-#include "core/detection/hidden_ends.h"
-#include "core/detection/hide_stars.h"
-#include "core/detection/judge_components.h"
-#include "core/detection/line_profile.h"
+#include "core/detection/frame_scene.h"
+#include "core/detection/known/star_motion.h"
 #include "core/detection/make_report.h"
-#include "core/detection/neglected_errors.h"
-#include "core/detection/psf_measure.h"
-#include "core/detection/scene.h"
-#include "core/detection/source_fit.h"
-#include "core/detection/star_motion.h"
-#include "core/detection/template_snr.h"
-#include "core/detection/trailed_stars.h"
+#include "core/detection/pixels/background.h"
+#include "core/detection/pixels/components.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/source/hidden_ends.h"
+#include "core/detection/source/line_profile.h"
+#include "core/detection/source/scene.h"
+#include "core/detection/source/source_fit.h"
+#include "core/detection/source/template_snr.h"
+#include "core/detection/stars/hide_stars.h"
+#include "core/detection/stars/psf_measure.h"
+#include "core/detection/stars/trailed_stars.h"
+#include "core/detection/streaks/faint_ends.h"
+#include "core/detection/streaks/faint_streaks.h"
+#include "core/detection/streaks/join_flashes.h"
+#include "core/detection/streaks/judge_components.h"
+#include "core/detection/streaks/neglected_errors.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -111,6 +115,19 @@ bool is_lost_in_its_errors(const Scene& scene, const FrameHeader& header, Source
          template_snr(scene, source.trail()) < detection_limits::sure_snr;
 }
 
+/// Adds the errors of the ends to a source; false if its light is then not sure.
+bool add_errors_of_ends(const Scene& scene, const FrameHeader& header, Source& source) {
+  const auto ends = errors_of_faint_ends(scene, source);
+  Source seen = source;  // with errors that do not depend on the noise beside its ends
+  add_steps_at_ends(seen, scene.sigma_px);
+  add_errors_of_hidden_ends(scene, seen);
+  if (seen.snr() < detection_limits::least_light_snr) return false;
+  add_neglected_errors(source, ends ? &*ends : nullptr);
+  if (is_lost_in_its_errors(scene, header, source)) return false;
+  if (!ends) add_errors_of_hidden_ends(scene, source);
+  return true;
+}
+
 std::vector<Component> components_of(const Scene& scene, FilteredFrame& filtered,
                                      Threads& threads) {
   return find_components(scene.counts, scene.background, filtered.sigma_px,
@@ -121,7 +138,8 @@ std::vector<Component> components_of(const Scene& scene, FilteredFrame& filtered
 /// Detects in a prepared frame. `known`: the stars that were subtracted from it; null: none.
 void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
                const std::vector<Component>& components, const KnownStars* known,
-               const FrameHeader& header, Threads& threads, DetectionResult& result) {
+               const FrameHeader& header, const DetectSettings& settings, Threads& threads,
+               DetectionResult& result) {
   if (known) {
     // Between the stars the background is lower and has less noise.
     background.measure_without(known->lit(), scene.counts, threads);
@@ -143,6 +161,7 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
   const std::vector<Source> others = judged.sources;
   for (Source& source : judged.sources)
     source = with_likelier_ends(scene, std::move(source), others);
+  judged.sources = with_joined_flashes(scene, std::move(judged.sources));
   result.report = make_report(scene.counts, header, background, scene.psf);
   result.report.star_like = judged.star_like;
   result.report.stars_expected = std::uint32_t(result.stars.expected);
@@ -150,43 +169,37 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
   for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
     source.at_edge |= may_leave(scene.counts, source);
-    const auto ends = errors_of_faint_ends(scene, source);
-    Source seen = source;  // with errors that do not depend on the noise beside its ends
-    add_steps_at_ends(seen, scene.sigma_px);
-    add_errors_of_hidden_ends(scene, seen);
-    if (seen.snr() < detection_limits::least_light_snr) continue;
-    add_neglected_errors(source, ends ? &*ends : nullptr);
-    if (is_lost_in_its_errors(scene, header, source)) continue;
-    if (!ends) add_errors_of_hidden_ends(scene, source);
+    if (source.flashes == 0 && !add_errors_of_ends(scene, header, source)) continue;
     if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
-    add_detection(describe(source, header), header, result.detections);
+    std::optional<MeasuredCurve> curve;
+    if (settings.light_curves) curve = light_curve_of(scene, source);
+    Detection detection = describe(source, header);
+    if (curve) describe_light(source, std::move(*curve), header, detection);
+    add_detection(std::move(detection), header, result.detections);
   }
   result.report.detections = std::uint32_t(result.detections.size());
 }
 
 /// Detects in a frame less its stars' trails, which it shows itself. Returns false if there are
 /// none or too many to find in bounded time.
-bool detect_among_trails(const Scene& with_stars, const FrameHeader& header, Threads& threads,
+bool detect_among_trails(const Scene& with_stars, const FrameHeader& header,
+                         const DetectSettings& settings, Threads& threads,
                          DetectionResult& result) {
   const std::vector<TrailedStar> stars = find_trailed_stars(with_stars);
   if (stars.empty()) return false;
   StarlessFrame frame = without_stars(with_stars, stars);
   Background background(frame.counts, detection_limits::background_cell_px, threads);
-  Scene scene{frame.counts,
-              background,
-              with_stars.stars,
-              with_stars.gain_e_per_dn,
-              with_stars.saturation_dn,
-              with_stars.sigma_px,
-              with_stars.blooming,
-              with_stars.psf,
-              with_stars.unusable};
+  Scene scene =
+      frame_scene(frame.counts, background, with_stars.stars, header, with_stars.unusable);
+  scene.use(with_stars.psf);
   FilteredFrame filtered(frame.counts.columns, frame.counts.rows, scene.sigma_px);
   const auto components = components_of(scene, filtered, threads);
   if (scene.unusable) hide(filtered, *scene.unusable);
   hide(filtered, frame.lit);
-  const KnownStars known(std::move(frame.lit));
-  detect_in(scene, background, filtered, components, &known, header, threads, result);
+  std::vector<Trail> subtracted;
+  for (const TrailedStar& star : stars) subtracted.push_back(star.trail);
+  const KnownStars known(std::move(subtracted), std::move(frame.lit));
+  detect_in(scene, background, filtered, components, &known, header, settings, threads, result);
   result.report.star_like += std::uint32_t(stars.size());
   return true;
 }
@@ -194,32 +207,27 @@ bool detect_among_trails(const Scene& with_stars, const FrameHeader& header, Thr
 }  // namespace
 
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
-                       const PixelMask* unusable, Threads& threads, const CatalogueSky* sky) {
+                       const PixelMask* unusable, Threads& threads, const CatalogueSky* sky,
+                       const DetectSettings& settings) {
   if (header.shutter_closed()) return without_detection(counts, header);
   Background background(counts, detection_limits::background_cell_px, threads);
   const StarMotion stars(header, counts.columns, counts.rows);
-  Scene scene{counts,
-              background,
-              stars,
-              header.gain_e_per_dn,
-              lowest_clipped_dn(header),
-              sigma_with_pixel(header.psf_fwhm_px),
-              header.detector && header.detector->blooming,
-              PsfField::gaussian(header.psf_fwhm_px),
-              unusable};
+  Scene scene = frame_scene(counts, background, stars, header, unusable);
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = components_of(scene, filtered, threads);
   scene.use(measure_psf(scene, components));
+  scene.sources_per_px2 = double(components.size() + 1) / double(counts.pixels.size());
   if (scene.unusable) hide(filtered, *scene.unusable);
   DetectionResult result;
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
-  // Of an unknown mount the frame itself has shown the trails, and more stars than a catalogue.
-  if (header.mount == "unknown" && stars_trail(scene) &&
-      detect_among_trails(scene, header, threads, result))
+  // Where stars trail the frame itself shows them, and more of them than most catalogues have.
+  const bool is_unknown = header.mount == "unknown";
+  if ((is_unknown ? stars_trail(scene) : stars_trail_far(scene)) &&
+      detect_among_trails(scene, header, settings, threads, result))
     return result;
-  detect_in(scene, background, filtered, components, known ? &*known : nullptr, header, threads,
-            result);
+  detect_in(scene, background, filtered, components, known ? &*known : nullptr, header, settings,
+            threads, result);
   return result;
 }
 

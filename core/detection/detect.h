@@ -3,8 +3,8 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/detection/catalogue_sky.h"
-#include "core/detection/stars_seen.h"
+#include "core/detection/known/catalogue_sky.h"
+#include "core/detection/known/stars_seen.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
 #include "core/products/frame_report.h"
@@ -18,6 +18,11 @@ struct DetectionResult {
   StarsSeen stars;                    // nothing without a catalogue
 };
 
+/// What is measured of detections beyond what always is.
+struct DetectSettings {
+  bool light_curves = false;  // of streaks
+};
+
 /// Detects what is no star, from the counts and the header alone. With a catalogue of stars, its
 /// stars are hidden, and a source that is bright enough for it and not in it is no star, whatever
 /// its shape. Without one, or if the frame does not show its stars where they should be, sources
@@ -26,7 +31,7 @@ struct DetectionResult {
 /// rows and the sources, besides the frame. `unusable`: pixels without a value; null: all have one.
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                        const PixelMask* unusable, Threads& threads,
-                       const CatalogueSky* sky = nullptr);
+                       const CatalogueSky* sky = nullptr, const DetectSettings& settings = {});
 
 /// The report of a frame without detection: header data, and `detection_off`.
 DetectionResult without_detection(const CountImage& counts, const FrameHeader& header);

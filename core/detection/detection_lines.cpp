@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/detection/detection_json.h"
+#include "core/products/product_json.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detection/atmosphere.h"
-#include "core/detection/components.h"
-#include "core/detection/detection_limits.h"
+#include "core/detection/known/atmosphere.h"
+#include "core/detection/pixels/components.h"
+#include "core/detection/pixels/detection_limits.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {

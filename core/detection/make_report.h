@@ -1,7 +1,7 @@
 #pragma once
 #include "core/base/image.h"
-#include "core/detection/background.h"
-#include "core/detection/psf.h"
+#include "core/detection/light/psf.h"
+#include "core/detection/pixels/background.h"
 #include "core/products/frame_header.h"
 #include "core/products/frame_report.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/detector/detector_effect.h"
+#include "core/detector/noise/detector_effect.h"
 
 namespace dmise {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "core/detector/detector_effect.h"
-#include "core/detector/poisson.h"
+#include "core/detector/noise/detector_effect.h"
+#include "core/detector/noise/poisson.h"
 
 namespace dmise {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/detector/detector.h"
-#include "core/detector/poisson.h"
+#include "core/detector/noise/poisson.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {

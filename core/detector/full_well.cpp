@@ -1,7 +1,7 @@
 #include "core/detector/full_well.h"
 
 #include "core/detector/detector.h"
-#include "core/detector/detector_kernels.h"
+#include "core/detector/noise/detector_kernels.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/detector/detector.h"
-#include "core/detector/poisson.h"
+#include "core/detector/noise/poisson.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/detector/detector_effect.h"
+#include "core/detector/noise/detector_effect.h"
 
 namespace dmise {
 

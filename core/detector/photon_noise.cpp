@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detector/detector_kernels.h"
-#include "core/detector/poisson.h"
+#include "core/detector/noise/detector_kernels.h"
+#include "core/detector/noise/poisson.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/detector/detector.h"
-#include "core/detector/detector_kernels.h"
+#include "core/detector/noise/detector_kernels.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/detector/detector_effect.h"
+#include "core/detector/noise/detector_effect.h"
 
 namespace dmise {
 

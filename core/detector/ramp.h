@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "core/detector/cosmic_rays.h"
-#include "core/detector/detector_effect.h"
+#include "core/detector/noise/detector_effect.h"
 
 namespace dmise {
 

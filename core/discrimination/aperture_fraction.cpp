@@ -4,9 +4,9 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/optics/otf.h"
 #include "core/optics/psf_plan.h"
 #include "core/optics/psf_table.h"
+#include "core/optics/waves/otf.h"
 
 namespace dmise {
 namespace {
@@ -26,7 +26,8 @@ double pixels_squared(double nu_per_px) {
 }
 
 bool is_round(const PointSpread& s) {
-  return s.wavefront.empty() && !s.field.any() && s.spiders == 0;
+  return s.model != PointSpread::Model::file && s.wavefront.empty() && !s.field.any() &&
+         s.spiders == 0;
 }
 
 }  // namespace
@@ -35,7 +36,9 @@ double aperture_fraction(const Optics& optics, double wavelength_m, double radiu
   const PointSpread& spread = optics.spread;
   if (!(radius_px > 0.0)) throw Error("aperture: radius_px: must be > 0");
   if (!is_round(spread))
-    throw Error("aperture: the camera has aberrations or spiders: its point spread is not round");
+    throw Error(
+        "aperture: the camera has aberrations, spiders or a psf_file: its point spread is not "
+        "round");
   const bool gaussian = spread.model == PointSpread::Model::gaussian;
   const double pixel_rad = optics.pixel_angle_rad();
   const PsfPlan plan = plan_psf(optics, wavelength_m, std::nullopt, 1.0);

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/base/printable.h"
 
 namespace dmise {

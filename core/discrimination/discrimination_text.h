@@ -6,7 +6,7 @@
 #include "core/discrimination/discrimination_design.h"
 #include "core/discrimination/material_likelihood.h"
 #include "core/discrimination/run_signatures.h"
-#include "core/image/chart.h"
+#include "core/image/charts/chart.h"
 
 namespace dmise {
 

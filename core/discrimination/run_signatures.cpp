@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
 #include "core/discrimination/aperture_fraction.h"
 #include "core/image/fits_file.h"
 #include "core/products/frame_file.h"
-#include "core/score/json_record.h"
+#include "core/products/product_json.h"
+#include "core/run/run_files.h"
+#include "core/run/run_record.h"
 
 namespace dmise {
 namespace {
@@ -75,7 +75,6 @@ class RunReader {
   RunSpectra take();
 
  private:
-  std::string file(const std::string& name) const { return directory_ + "/" + name; }
   std::size_t sensor_index(const std::string& name) const;
   void measure_frame(std::size_t sensor, std::uint32_t frame, std::size_t slot);
 
@@ -93,35 +92,32 @@ class RunReader {
 };
 
 void RunReader::read_sensors(std::vector<std::string> wanted) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file("run.json"), ignored))
-    throw ConfigError(file("run.json") + ": is missing: no run, or one that has not ended");
-  const JsonRecord run(read_text_file(file("run.json")), file("run.json"));
-  for (const JsonRecord& sensor : run.object("scenario").objects("sensors")) {
-    const auto name = sensor.get<std::string>("name");
-    if (!sensor.has("camera")) continue;
+  const RunRecord run = ended_run_record(directory_);
+  for (const RunSensor& sensor : run.sensors) {
+    const std::string& name = sensor.name;
+    if (!sensor.camera_keys) continue;
     const auto at = std::find(wanted.begin(), wanted.end(), name);
     if (at == wanted.end() && !wanted.empty()) continue;
     if (at != wanted.end()) {
       wanted.erase(at);
       if (wanted.empty()) wanted.emplace_back();  // no further sensor
     }
-    if (sensor.has("site"))
-      throw ConfigError(file("run.json") + ": sensor " + name +
+    if (sensor.site)
+      throw ConfigError(run.path + ": sensor " + name +
                         ": is on the ground: its air dims each band by an unknown amount");
-    const JsonRecord camera = sensor.object("camera");
+    const JsonRecord& camera = *sensor.camera_keys;
     SpectralSensor s{.name = name, .band = band_of(camera)};
     try {
       s.aperture_fraction = aperture_fraction(optics_of(camera), s.band.centre_m, aperture_);
     } catch (const Error& e) {
-      throw ConfigError(file("run.json") + ": sensor " + name + ": " + e.what());
+      throw ConfigError(run.path + ": sensor " + name + ": " + e.what());
     }
     spectra_.sensors.push_back(std::move(s));
   }
   std::erase(wanted, "");
-  if (!wanted.empty()) throw ConfigError(file("run.json") + ": has no sensor " + wanted.front());
+  if (!wanted.empty()) throw ConfigError(run.path + ": has no sensor " + wanted.front());
   if (spectra_.sensors.size() < 2)
-    throw ConfigError(file("run.json") + ": a signature needs two bands or more, got " +
+    throw ConfigError(run.path + ": a signature needs two bands or more, got " +
                       std::to_string(spectra_.sensors.size()));
   std::stable_sort(spectra_.sensors.begin(), spectra_.sensors.end(),
                    [](const auto& a, const auto& b) { return a.band.centre_m < b.band.centre_m; });
@@ -133,12 +129,8 @@ std::size_t RunReader::sensor_index(const std::string& name) const {
 }
 
 void RunReader::read_truth(const ReadProgress& progress) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file("truth.jsonl"), ignored))
-    throw ConfigError(file("truth.jsonl") +
-                      ": is missing: the scenario says output: {truth: false}");
   places_.resize(spectra_.sensors.size());
-  for_lines(file("truth.jsonl"), progress, [&](const JsonRecord& record) {
+  for_lines(existing_path(directory_, run_file::truth), progress, [&](const JsonRecord& record) {
     const Truth truth = truth_of(record);
     const std::size_t sensor = sensor_index(truth.sensor);
     if (sensor == places_.size() || !truth.in_frame) return;
@@ -156,7 +148,7 @@ void RunReader::read_truth(const ReadProgress& progress) {
 
 void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::size_t slot) {
   const SpectralSensor& s = spectra_.sensors[sensor];
-  const Frame frame = read_frame(file(s.name + "/" + frame_file_name(number)));
+  const Frame frame = read_frame(directory_ + "/" + s.name + "/" + frame_file_name(number));
   const FrameHeader& h = frame.header;
   const CountScale scale{h.gain_e_per_dn, h.bias_dn, h.saturation_dn};
   const double sunlight_e = full_sunlight_e(h.v_solar_zero_point_mag(), h.exposure_s);

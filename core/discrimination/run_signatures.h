@@ -2,11 +2,11 @@
 #include <string>
 #include <vector>
 
+#include "core/base/files/read_progress.h"
 #include "core/base/parallel.h"
 #include "core/discrimination/aperture_photometry.h"
 #include "core/discrimination/spectral_signature.h"
 #include "core/photometry/band.h"
-#include "core/score/read_progress.h"
 
 namespace dmise {
 

@@ -38,17 +38,24 @@ struct SceneFacts {
   bool gases = false;            // known amounts of gases over it, with water vapour
   bool stars = true;             // there is a catalogue
   bool shapes = true;            // there are objects with a shape
+  bool glints = false;           // with small parts that glint
   bool vignettes = false;        // the optics lose light off the axis
+  bool blur_of_file = false;     // the blur of the optics is that of images
   bool diffracts = false;        // the blur of the optics depends on the wavelength
   bool turbulent = false;        // the air blurs, too
   bool synthetic_stars = false;  // the scenario asks for some
+  bool blurs = false;            // the optics blur at all
   bool blur_varies = false;      // over the field, by a table
   bool focus_drifts = false;
   bool stray_light = false;  // the optics scatter light from beside the field
+  bool thermal = false;      // the band reaches into the heat of air and optics
+  bool warm_optics = false;  // and the heat of the optics is known
   // A body's disc is in the field or next to it during the exposure.
   bool sun_in_field = false, moon_in_field = false, earth_in_field = false;
-  bool shutter_closed = false;  // during the exposure: no light comes in
-  bool limb_in_field = false;   // from space: light may come through the air over the Earth's limb
+  bool planets_in_field = false;  // or next to it
+  bool shutter_closed = false;    // during the exposure: no light comes in
+  bool daylight = false;  // the Sun is up over a sensor on the ground, or little below its horizon
+  bool limb_in_field = false;  // from space: light may come through the air over the Earth's limb
 };
 
 /// A closed family of effects, in the order in which they run.

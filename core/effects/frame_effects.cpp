@@ -76,8 +76,8 @@ double of_patches(const SkySample& s, const PlanFacts& f) {
                over_sun = patch_rad / sun_rad;
   double missed_e = std::min(1.0, 8.0 * patch_rad * patch_rad + over_sun * over_sun) * zodiacal_e +
                     1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e) +
-                    steep(sun_rad) * s.of(SkyPart::twilight);
-  // Twilight falls by 1 / (360 k) mag a degree from the zenith, where it has the tip of a cone.
+                    steep(sun_rad) * (s.of(SkyPart::twilight) + s.of(SkyPart::daylight));
+  // More than twilight's smooth slope at the zenith needs.
   constexpr double tip = 0.3, mag_per_rad = 0.16;
   if (f.sees_zenith)
     missed_e += tip * patch_rad * mag_per_rad / std::max(f.zenith_extinction_mag, 0.05) *
@@ -94,7 +94,9 @@ double of_patches(const SkySample& s, const PlanFacts& f) {
 /// smaller than a patch.
 double of_cut(int level, const SkySample& s, const PlanFacts& f) {
   constexpr double smallest_px = 64.0;
-  const double share = f.cloud_detail_px < smallest_px ? 1.0 : 1.2 * SkyGrid::asked(level);
+  // Twilight has up to twice the error that is asked for (SkyLayer.EachLevelOfTheGrid..).
+  const double bends = 1.0 + s.of(SkyPart::twilight) / std::max(s.sky_e, 1e-300);
+  const double share = f.cloud_detail_px < smallest_px ? 1.0 : 1.2 * bends * SkyGrid::asked(level);
   const double brightest_e =
       PlanFacts::usual_between * (s.sky_e - s.of(SkyPart::scattered_moonlight) + f.moonlight_e(s));
   return share * std::min(brightest_e, (1.0 + share) * f.saturated_e);
@@ -193,7 +195,10 @@ ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   const double limit = limit_v_mag(level);
   const double left_e = level == 0 ? f.brightest_star_e : f.brightest_left_e[f.limit(limit)];
   const double starlight_e = f.starlight_e[f.limit(limit)];
-  if (!(left_e > 0.0 || starlight_e > 0.0)) return {};
+  // Stars beyond the catalogue are drawn only where it is drawn to its end.
+  const bool cut = f.synthetic_brighter[f.limit(limit)] == 0.0;
+  const ErrorBound beyond = cut ? SyntheticBackground::error(0, f) : ErrorBound{};
+  if (!(left_e > 0.0 || starlight_e > 0.0)) return beyond;
   // The brightest star that is left out, in its brightest pixel; and the smooth starlight that
   // stands for all of them.
   const double star = f.peak_in_noise(left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e(),
@@ -207,17 +212,27 @@ ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   if (left_e * f.pattern_share(f.star_trail_px) >= PlanFacts::least_snr * f.least_noise_e())
     error.photometry_mag = unbounded;
   error.position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px);
-  return error;
+  return error + beyond;
+}
+
+bool SyntheticBackground::is_seen(double signal_e, const PlanFacts& f) {
+  constexpr double seen_snr = 2.5;
+  return signal_e * f.pattern_share(f.star_trail_px) / f.least_noise_e() >= seen_snr;
+}
+
+int SyntheticBackground::whole_level(const PlanFacts& f) {
+  int level = 0;
+  while (level < facts.reference() && f.synthetic_left_e[f.limit(limit_v_mag(level))] > 0.0)
+    ++level;
+  return level;
 }
 
 ErrorBound SyntheticBackground::error(int level, const PlanFacts& f) {
   // Their light is there, smooth: what is missing is stars that can be seen one by one.
-  constexpr double seen_snr = 2.5;
   const double left_e = f.synthetic_left_e[f.limit(limit_v_mag(level))];
   if (!(left_e > 0.0)) return {};
-  const double snr = left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e();
   const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());
-  return {.photometry_mag = snr >= seen_snr ? unbounded : 1.086 * share,
+  return {.photometry_mag = is_seen(left_e, f) ? unbounded : 1.086 * share,
           .position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px)};
 }
 

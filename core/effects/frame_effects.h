@@ -4,7 +4,7 @@
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
 
-// The effects that sensors/pipeline runs as stages of a frame's light, or chooses between: their
+// The effects that sensors/light runs as stages of a frame's light, or chooses between: their
 // facts, errors and costs, which configuration, documents and the planner need.
 namespace dmise {
 
@@ -65,7 +65,7 @@ struct SyntheticBackground {
                                                            "v19", "v20", "v21", "all"};
   static constexpr EffectFacts facts{
       "synthetic_stars",
-      "stars that no catalogue has, where it ends (if `stars.synthetic_to` asks for them)",
+      "stars that no catalogue has, where it ends (to `stars.synthetic_to`)",
       "they are in the smooth starlight; a pixel of 10 arcsec in the Milky Way has 0.8 to V = 21",
       "counts of Tycho-2 and USNO-B1.0; Bahcall & Soneira 1980, ApJS 44, 73",
       true,
@@ -77,6 +77,10 @@ struct SyntheticBackground {
   }
   static ErrorBound error(int level, const PlanFacts& f);
   static double cost_s(int level, const PlanFacts& f);
+  /// Whether a star of so much light stands out of the noise.
+  static bool is_seen(double signal_e, const PlanFacts& f);
+  /// Returns the lowest level that leaves out no star that the facts ask for.
+  static int whole_level(const PlanFacts& f);
 };
 
 /// How finely the smooth sky is sampled.

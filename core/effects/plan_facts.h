@@ -84,8 +84,9 @@ struct PlanFacts {
   double nearest_sun_rad = 3.0;                                      // of the field's edge
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
   bool sees_horizon = false;                                         // the Earth is in the field
-  double disc_e = 0.0;         // of the brightest pixel of Sun, Moon and Earth in the field
-  double stray_light_e = 0.0;  // of a pixel
+  double disc_e = 0.0;            // of the brightest pixel of Sun, Moon and Earth in the field
+  double stray_light_e = 0.0;     // of a pixel
+  double thermal_optics_e = 0.0;  // of the brightest pixel
   double limb_airglow_e = 0.0, limb_air_e = 0.0;  // of the brightest pixel of the Earth's limb
   double least_illumination = 1.0;                // by vignetting
   double illumination_slope_per_px = 0.0;         // steepest, relative, of a vignetting by a table
@@ -112,11 +113,17 @@ struct PlanFacts {
   bool near_shadow = false;     // an object is in the Earth's shadow or near it
   bool near_shadow_of_air = false;  // sunlight to an object passes the Earth's air, or may
   double brightest_object_e = 0.0;
-  std::vector<double> shape_radius_px;    // of each object with a shape
-  double narrowest_object_px = 0.0;       // 0: a point
-  double hidden_sky_px = 0.0;             // largest number of pixels of sky behind an object
-  bool faint_objects = false;             // an object may be too faint to count as a source
-  double longest_trail_px = 0.0;          // of any source, within the frame
+  std::vector<double> shape_radius_px;  // of each object with a shape
+  double narrowest_object_px = 0.0;     // 0: a point
+  double hidden_sky_px = 0.0;           // largest number of pixels of sky behind an object
+  bool faint_objects = false;           // an object may be too faint to count as a source
+  double longest_trail_px = 0.0;        // of any source, within the frame
+  /// Objects that their range puts out of focus: the share of their light that is elsewhere than in
+  /// focus, and the cost of drawing one so.
+  struct OutOfFocus {
+    double misplaced = 0.0, cost_s = 0.0;
+  };
+  std::vector<OutOfFocus> out_of_focus;
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
   AirFacts air;
   // The blur.

@@ -12,6 +12,8 @@ enum class SkyPart {
   scattered_moonlight,
   twilight,
   light_pollution,
+  thermal_sky,
+  daylight,
   count
 };
 inline constexpr std::size_t sky_part_count = static_cast<std::size_t>(SkyPart::count);

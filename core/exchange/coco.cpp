@@ -1,6 +1,6 @@
 #include "core/exchange/coco.h"
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"
 #include "core/products/frame_file.h"

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
-#include "core/base/text_fields.h"
+#include "core/base/files/json.h"
+#include "core/base/files/json_record.h"
+#include "core/base/files/text_fields.h"
 #include "core/exchange/export_format.h"
-#include "core/score/json_record.h"
 
 namespace dmise {
 namespace {

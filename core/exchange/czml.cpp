@@ -4,7 +4,7 @@
 #include <array>
 #include <map>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/exchange/oem.h"
 #include "core/wcs/wcs.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/exchange/run_products.h"
-#include "core/orbit/elements.h"
+#include "core/orbit/elements/elements.h"
 
 // Formats of other programs in which a run's products can be written. A format is one file pair of
 // this directory and a row of `export_formats`; docs/exchange.md states its conventions.

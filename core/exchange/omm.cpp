@@ -7,8 +7,8 @@
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/number_text.h"
-#include "core/orbit/element_text.h"
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/element_text.h"
+#include "core/orbit/elements/epoch.h"
 #include "core/tracking/mean_elements_fit.h"
 
 namespace dmise {

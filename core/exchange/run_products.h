@@ -6,27 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "core/frames/geodesy.h"
-#include "core/orbit/elements.h"
+#include "core/base/files/read_progress.h"
 #include "core/products/detection.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
-#include "core/score/read_progress.h"
+#include "core/run/run_record.h"
 #include "core/time/clock.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
-
-/// A sensor of a run, as run.json describes it.
-struct RunSensor {
-  std::string name;
-  std::optional<Site>
-      site;              // of a sensor on the ground, on WGS 84 whatever the scenario's ellipsoid
-  std::string platform;  // of one in orbit: the object that carries it
-  int columns = 0, rows = 0;
-  double psf_fwhm_px = 0.0;  // of the camera; a frame may have measured another
-  bool light_time = true;    // whether objects are seen where they were when the light left
-};
 
 /// A frame, as its line in frames.jsonl reports it.
 struct RunFrame {
@@ -42,26 +30,13 @@ struct RunFrame {
   double exposure_s() const { return (end - start).seconds(); }
 };
 
-/// A catalogue of a run.
-struct RunCatalogue {
-  std::string named;              // as in the scenario
-  std::vector<std::string> only;  // numbers or names; empty: all
-  std::string sha256;             // of its text; empty in runs of earlier versions
-};
-
-/// An object of the scenario itself.
-struct RunObject {
-  std::uint32_t catalogue_number = 0;
-  std::optional<MeanElements> elements;  // if it moves by SGP4
-};
-
 /// The products of a run that has ended, to be exported.
 struct RunProducts {
   std::string directory;
   std::string software, digest;
   std::uint64_t seed = 0;
   Clock clock;
-  std::vector<RunSensor> sensors;
+  std::vector<RunSensor> sensors;        // sites are on WGS 84, whatever the scenario's ellipsoid
   std::vector<RunFrame> frames;          // by time, sensor and index
   std::vector<Truth> truths;             // if they were asked for, in the same order
   std::vector<Detection> detections;     // likewise

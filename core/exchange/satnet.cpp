@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "core/base/files/json.h"
+#include "core/base/files/paths.h"
 #include "core/base/formatted.h"
-#include "core/base/json.h"
-#include "core/base/paths.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"

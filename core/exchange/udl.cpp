@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/time/iso8601.h"

@@ -1,6 +1,6 @@
 #include "core/facets/facet_kernels.h"
 
-#include "core/base/lanes.h"
+#include "core/base/numeric/lanes.h"
 
 namespace dmise::DMISE_SIMD {
 namespace {

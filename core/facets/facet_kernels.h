@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "core/base/simd_sets.h"
+#include "core/base/numeric/simd_sets.h"
 
 namespace dmise {
 

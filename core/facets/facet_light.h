@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/simd_level.h"
+#include "core/base/numeric/simd_level.h"
 #include "core/effects/effects.h"
 #include "core/facets/facet_set.h"
 #include "core/facets/facet_shadow.h"

@@ -16,6 +16,15 @@ struct Quaternion {
   bool operator==(const Quaternion&) const = default;
 };
 
+inline Quaternion conjugate(const Quaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
+
+/// The rotation of `b`, then of `a`: `c_from_a = c_from_b * b_from_a`.
+inline Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
 /// Shepperd's method: the largest of the four components is found first, so nothing cancels.
 template <class To, class From>
 Quaternion quaternion_of(const Rotation<To, From>& rotation) {

@@ -6,10 +6,10 @@
 #include <span>
 #include <tuple>
 
-#include "core/base/chi_square.h"
+#include "core/base/numeric/chi_square.h"
 #include "core/base/units.h"
-#include "core/tracking/initial_orbit.h"
-#include "core/tracking/three_lines.h"
+#include "core/tracking/initial/initial_orbit.h"
+#include "core/tracking/initial/three_lines.h"
 
 namespace dmise {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/forces/forces.h"
 #include "core/fusion/fusion_settings.h"
 #include "core/fusion/track_start.h"
-#include "core/tracking/forces.h"
 
 namespace dmise {
 

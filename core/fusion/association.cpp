@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base/assignment.h"
+#include "core/base/numeric/assignment.h"
 #include "core/base/units.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"

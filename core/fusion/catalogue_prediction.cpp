@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/epoch.h"
 
 namespace dmise {
 
@@ -38,9 +38,7 @@ OrbitEstimate CataloguePrediction::estimate(std::size_t i) const {
   OrbitEstimate out;
   out.state = {.time = time_, .position_m = position_m(i), .velocity_m_per_s = velocity_m_per_s(i)};
   const Vec<Gcrs> r = out.state.position_m, v = out.state.velocity_m_per_s;
-  const Vec<Gcrs> up = unit(r), normal = unit(cross(r, v));
-  Eigen::Matrix3d axes;  // columns: radial, along, across
-  axes << eigen_of(up), eigen_of(cross(normal, up)), eigen_of(normal);
+  const Eigen::Matrix3d axes = orbit_axes(out.state);
   const double turn_rad_per_s = norm(cross(r, v)) / dot(r, r);
   const Eigen::Vector3d place(sigma_m(i, 0), sigma_m(i, 1), sigma_m(i, 2));
   const Eigen::Vector3d rate = turn_rad_per_s * Eigen::Vector3d(place[1], place[0], place[2]);

@@ -5,7 +5,7 @@
 
 #include "core/frames/earth_orientation.h"
 #include "core/fusion/fusion_settings.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/time/clock.h"
 #include "core/tracking/orbit_state.h"
 

@@ -11,7 +11,7 @@
 #include "core/fusion/observation_plan.h"
 #include "core/fusion/sensor_frame.h"
 #include "core/fusion/track_start.h"
-#include "core/orbit/elements.h"
+#include "core/orbit/elements/elements.h"
 #include "core/products/track.h"
 #include "core/time/clock.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 
 namespace dmise {
 namespace {

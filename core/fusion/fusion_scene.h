@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/fusion/fusion.h"
-#include "core/orbit/cone_test.h"
-#include "core/sky/shadow.h"
+#include "core/orbit/cones/cone_test.h"
+#include "core/sky/bodies/shadow.h"
 
 namespace dmise {
 

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "core/forces/forces.h"
 #include "core/frames/earth_orientation.h"
 #include "core/fusion/cued_sensor.h"
 #include "core/fusion/mount.h"
 #include "core/products/task.h"
-#include "core/sky/shadow.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/bodies/shadow.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/time/clock.h"
-#include "core/tracking/forces.h"
 #include "core/tracking/orbit_state.h"
 #include "core/tracking/outcome.h"
 

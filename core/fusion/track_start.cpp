@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/orbit/two_body.h"
-#include "core/tracking/initial_orbit.h"
+#include "core/tracking/initial/initial_orbit.h"
 
 namespace dmise {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/fusion/fusion_settings.h"
 #include "core/fusion/sensor_frame.h"
 #include "core/tracking/batch.h"
-#include "core/tracking/triangulate.h"
+#include "core/tracking/initial/triangulate.h"
 
 namespace dmise {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/monotone_cubic.h"
+#include "core/base/numeric/monotone_cubic.h"
 #include "core/base/units.h"
 #include "core/image/card_text.h"
 #include "core/image/fits_cards.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/image.h"
-#include "core/detector/pixel_flags.h"
+#include "core/detector/noise/pixel_flags.h"
 #include "core/products/frame_header.h"
 #include "core/products/frame_notes.h"
 #include "core/products/pixel_mask.h"

@@ -192,6 +192,8 @@ void visit(Visitor& v, FrameHeader& h) {
   if (v.present("MIRRORED", h.mirrored))
     v.flag("MIRRORED", h.mirrored, "rows run against the camera's y axis");
   visit_exclusion(v, h);
+  if (v.present("DARK", h.dark))
+    v.flag("DARK", h.dark, "cover or shutter closed: no light came in");
   visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
   visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");
   visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, that aberrates the WCS, GCRS");

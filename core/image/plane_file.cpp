@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/plain_image.h"
 

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/fits_guard.h"
+#include "core/base/files/fits_guard.h"
+#include "core/base/files/text_file.h"
 #include "core/base/formatted.h"
-#include "core/base/text_file.h"
-#include "core/detection/psf.h"
+#include "core/detection/light/psf.h"
 #include "core/image/fits_block.h"
+#include "core/image/fits_image.h"
 #include "core/ingest/colour_mosaic.h"
 #include "core/ingest/count_map.h"
 #include "core/ingest/detector_cards.h"
 #include "core/ingest/detector_defects.h"
-#include "core/ingest/fits_image.h"
 #include "core/ingest/frame_facts.h"
 #include "core/ingest/star_trails.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/quantile.h"
-#include "core/detection/background.h"
+#include "core/base/numeric/quantile.h"
+#include "core/detection/pixels/background.h"
 
 namespace dmise {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include "core/base/quantile.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/quantile.h"
+#include "core/base/numeric/rng.h"
 
 namespace dmise {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/formatted.h"
-#include "core/base/quantile.h"
-#include "core/detection/background.h"
+#include "core/base/numeric/quantile.h"
+#include "core/detection/pixels/background.h"
 
 namespace dmise {
 namespace {

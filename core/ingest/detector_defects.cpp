@@ -7,12 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
-#include "core/base/quantile.h"
-#include "core/base/rng.h"
-#include "core/base/text_fields.h"
-#include "core/detection/background.h"
-#include "core/detection/trail_light.h"
+#include "core/base/numeric/quantile.h"
+#include "core/base/numeric/rng.h"
+#include "core/detection/light/trail_light.h"
+#include "core/detection/pixels/background.h"
 
 namespace dmise {
 namespace {

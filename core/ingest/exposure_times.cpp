@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
-#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"

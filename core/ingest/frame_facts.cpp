@@ -9,7 +9,7 @@
 #include "core/ingest/exposure_times.h"
 #include "core/ingest/site_cards.h"
 #include "core/ingest/standard_wcs.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 

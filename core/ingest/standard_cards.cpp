@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text_fields.h"
+#include "core/base/files/text_fields.h"
 #include "core/products/observation.h"
 
 namespace dmise {

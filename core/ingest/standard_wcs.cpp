@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
-#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/frames/celestial_frames.h"
 #include "core/image/card_text.h"

@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "core/base/formatted.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/star_sources.h"
-#include "core/detection/common_trail.h"
-#include "core/detection/detection_limits.h"
+#include "core/detection/known/star_motion.h"
+#include "core/detection/light/psf.h"
 #include "core/detection/make_report.h"
-#include "core/detection/psf.h"
-#include "core/detection/star_motion.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/stars/common_trail.h"
 #include "core/frames/earth_orientation.h"
 #include "core/time/iso8601.h"
 
@@ -21,6 +21,8 @@ namespace {
 
 constexpr double least_fwhm_px = 0.5, most_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
+// A shorter trail looks as coma and astigmatism do, which the PSF follows.
+constexpr double least_trail_sigmas = 3.5;
 
 /// Turns a camera by a rotation vector in its axes.
 Quaternion turned(const Quaternion& camera, double x_rad, double y_rad) {
@@ -187,6 +189,12 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
   std::optional<PixelPosition> trail;
   if (!is_short && are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
   if (!trail) trail = measured_trail(shape);
+  if (trail && std::hypot(trail->x_px, trail->y_px) < least_trail_sigmas * shape.sigma_px) {
+    cards.assumed(
+        formatted("mount: turns with the stars, whose images are %.2g px longer than wide",
+                  std::hypot(trail->x_px, trail->y_px)));
+    return;
+  }
   if (!trail) {
     cards.assumed("mount: turns with the stars, which do not trail");
     return;

@@ -27,7 +27,7 @@ struct ClockError {
   /// The inverse.
   SimTime reading(SimTime true_time, double jitter_s) const;
 
-  /// Bound of the jitter in units of its rms: that of `normal_of` (core/base/rng.h).
+  /// Bound of the jitter in units of its rms: that of `normal_of` (core/base/numeric/rng.h).
   static constexpr double most_deviations = 6.35;
   double most_jitter_s() const { return most_deviations * clock_rms_s; }
   /// Returns the first and the last true time at which the clock may read `reading`.

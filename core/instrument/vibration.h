@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/sim_time.h"
 #include "core/effects/accuracy.h"
 #include "core/instrument/instrument_effect.h"

@@ -38,7 +38,7 @@ struct Phong {
 
 /// To add a model: write its struct here, its overloads in brdf.cpp and facet_set.cpp, its shader
 /// in sensors/render, its f in tests/materials/brdf_value.h, read it in
-/// core/config/material_config.cpp.
+/// core/config/objects/material_config.cpp.
 using Brdf = std::variant<Lambert, SandfordRobertson, Phong>;
 
 /// Below this cosine of the viewing angle (88.9 deg) the factor 1/cos_out of the Sandford-Robertson

@@ -7,9 +7,9 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/files/text_fields.h"
+#include "core/base/files/text_file.h"
 #include "core/base/nearest_name.h"
-#include "core/base/text_fields.h"
-#include "core/base/text_file.h"
 #include "core/materials/line_fields.h"
 #include "core/materials/mesh_repair.h"
 #include "core/materials/panel.h"

@@ -4,6 +4,7 @@
 #include "core/optics/image_optics.h"
 #include "core/optics/point_spread.h"
 #include "core/optics/stray_light.h"
+#include "core/optics/thermal_optics.h"
 #include "core/optics/vignetting.h"
 #include "core/projection/projection.h"
 
@@ -23,6 +24,7 @@ struct Optics {
   PointSpread spread;         // how points are blurred, and by which method
   Vignetting vignetting;
   StrayLight stray_light;            // of what is beside the field
+  ThermalOptics thermal;             // heat of telescope and window
   ImageOptics image;                 // effects on the whole image
   bool equivalent_aperture = false;  // allows N < 0.5: aperture is only a collecting area
 

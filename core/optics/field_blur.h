@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/monotone_cubic.h"
+#include "core/base/numeric/monotone_cubic.h"
 #include "core/effects/effects.h"
 #include "core/optics/field_radius.h"
 

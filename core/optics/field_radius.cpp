@@ -29,6 +29,11 @@ double height_px(const Optics& optics, double radius, FieldRadius unit) {
   return optics.focal_length_px() * optics.projection.height(radius * deg);
 }
 
+FieldPlace field_place(const Optics& optics, PixelPosition pixel) {
+  const PixelPosition d = pixel - principal_point(optics);
+  return {std::hypot(d.x_px, d.y_px) / corner_px(optics), std::atan2(d.y_px, d.x_px)};
+}
+
 double corner_px(const Optics& optics) { return 0.5 * std::hypot(optics.columns, optics.rows); }
 
 }  // namespace dmise

@@ -42,6 +42,9 @@ std::optional<double> field_radius_at(const Optics& optics, double height_px, Fi
 /// Image height of such a distance [px]; infinite where the lens images nothing.
 double height_px(const Optics& optics, double radius, FieldRadius unit);
 
+/// Place in the field of a pixel.
+FieldPlace field_place(const Optics& optics, PixelPosition pixel);
+
 /// Distance of the frame's corners from the principal point [px].
 double corner_px(const Optics& optics);
 

@@ -1,10 +1,12 @@
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
 #include "core/optics/field_blur.h"
 #include "core/optics/focus_drift.h"
+#include "core/optics/measured_psf.h"
 
 namespace dmise {
 
@@ -20,9 +22,9 @@ struct FieldAberrations {
 
 /// Point spread of a camera before pixel integration, and how it is computed.
 struct PointSpread {
-  static constexpr EffectFacts facts{"psf", "blur of the optics",
-                                     "light falls on a point of no size",
-                                     "Gaussian, or Fourier optics of the pupil"};
+  static constexpr EffectFacts facts{
+      "psf", "blur of the optics", "light falls on a point of no size",
+      "Gaussian, Fourier optics of the pupil, or images from a file"};
 
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   /// Of the plane, once, unless it is the air that makes it necessary; sources have that of their
@@ -32,6 +34,7 @@ struct PointSpread {
   enum class Model {
     gaussian,     // round, of `psf_fwhm_px` and diffraction in quadrature
     diffraction,  // of the pupil: wavefront, spiders, turbulence, jitter
+    file,         // of images of a point source, with what air is in them
   };
   enum class Method {
     automatic,  // chosen by plan_psf
@@ -52,7 +55,9 @@ struct PointSpread {
   int wavelengths = 1;   // over the band, 1..16
   int spiders = 0;       // vanes, 0..12
   double spider_width_m = 0.0;
-  double defocus_m = 0.0;   // distance of the detector from the focus
+  double defocus_m = 0.0;  // distance of the detector from the focus of infinity, away from it
+  /// Range that is in focus, whose share of `defocus_m` is focal length^2 / range.
+  double focus_distance_m = std::numeric_limits<double>::infinity();
   double jitter_rad = 0.0;  // of the pointing, rms along one axis
   std::vector<WavefrontTerm> wavefront;
   FieldAberrations field;
@@ -60,6 +65,7 @@ struct PointSpread {
   int most_screens = 32;                // beyond so many tau0: long exposure
   FieldBlur varying;                    // over the field, by tables
   FocusDrift drift;                     // of the detector along the axis
+  MeasuredPsfPointer measured;          // of `file`, else null
 
   bool operator==(const PointSpread&) const = default;
 };

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/optics/projection.h"
 #include "core/optics/psf_table.h"
 
 namespace dmise {
@@ -52,8 +53,27 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
   extra_.resize(band_.size());
   if (!has_screens(plan_)) return;
   screen_grid_ = sample_screens(optics_, plan_, seeing_);
-  flow_.emplace(aperture_samples(pupil_at(optics_, {}, plan_.wavelength_m), screen_grid_),
-                seeing_->outer_scale_m / screen_grid_.step_m, turbulence);
+  flow_ = std::make_shared<FrozenFlow>(
+      aperture_samples(pupil_at(optics_, {}, plan_.wavelength_m), screen_grid_),
+      seeing_->outer_scale_m / screen_grid_.step_m, turbulence);
+}
+
+PsfModel PsfModel::refocused(const Optics& optics, const PsfPlan& plan) const {
+  PsfModel other = *this;
+  other.optics_ = optics;
+  other.plan_ = plan;
+  other.cell_rad_ = optics.pixel_angle_rad() / plan.oversampling;
+  other.extra_.assign(band_.size(), std::nullopt);
+  other.centred_.clear();
+  try {
+    other.grids_ = sample_pupils(optics, band_, plan, seeing_);
+  } catch (const ConfigError&) {
+    other.plan_.geometric = true;
+    if (has_screens(plan)) other.plan_.exposure = ExposureKind::lasting;
+    other.flow_ = nullptr;
+    other.grids_.clear();
+  }
+  return other;
 }
 
 // Tilts that put the centroid of the truncated kernel without air on the axis: first by the
@@ -90,7 +110,7 @@ std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place, std::size
 
 bool PsfModel::is_round(const FieldPlace& place) const {
   const PointSpread& s = optics_.spread;
-  return s.model == Model::gaussian ||
+  return s.model == Model::gaussian || plan_.geometric ||
          (!flow_ && s.spiders == 0 && s.wavefront.empty() && s.defocus_m == 0.0 &&
           s.varying.wavefront.empty() && (place.radius == 0.0 || !s.field.any()));
 }
@@ -121,6 +141,22 @@ PsfKernel PsfModel::gaussian_kernel(const FieldPlace& place, double wavelength_m
     return std::exp(-scale * square) * disc_otf(std::hypot(nu_x, nu_y)) * extra;
   };
   return signed_kernel_of(otf, OtfSymmetry::point, 0.5 / cell_rad_, cell_rad_, plan_.half_cells);
+}
+
+PsfKernel PsfModel::file_kernel(const FieldPlace& place, double wavelength_m) const {
+  const MeasuredPsf& measured = *optics_.spread.measured;
+  const PixelPosition axis = principal_point(optics_);
+  const double height_px = place.radius * corner_px(optics_);
+  const PixelPosition at{axis.x_px + height_px * std::cos(place.angle_rad),
+                         axis.y_px + height_px * std::sin(place.angle_rad)};
+  const double pixel_rad = optics_.pixel_angle_rad();
+  const auto more = [&](double x_per_px, double y_per_px) {
+    const double nu_x = x_per_px / pixel_rad, nu_y = y_per_px / pixel_rad;
+    const double extra = disc_otf(std::hypot(nu_x, nu_y)) * extra_otf(nu_x, nu_y, wavelength_m);
+    return measured.with_pixel() ? extra / (pixel_otf(nu_x, pixel_rad) * pixel_otf(nu_y, pixel_rad))
+                                 : extra;
+  };
+  return measured.kernel(at, wavelength_m, plan_.oversampling, plan_.half_cells, more);
 }
 
 double PsfModel::air_otf(double nu, double wavelength_m) const {
@@ -160,7 +196,7 @@ PsfKernel PsfModel::round_kernel(double wavelength_m) {
     const double blur =
         gaussian ? jitter_otf(nu, sigma_rad)
                  : diffraction_otf(nu, wavelength_m, optics_.aperture_m, optics_.obscuration);
-    return blur == 0.0 ? 0.0 : blur * extra_otf(nu_x, nu_y, wavelength_m);
+    return blur == 0.0 ? 0.0 : blur * disc_otf(nu) * extra_otf(nu_x, nu_y, wavelength_m);
   };
   return signed_kernel_of(otf, OtfSymmetry::axes, 0.5 / cell_rad_, cell_rad_, plan_.half_cells);
 }
@@ -187,6 +223,12 @@ PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double expos
   const auto add = [&](const PsfKernel& k, double share) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += share * double(k.values[i]);
   };
+  if (optics_.spread.model == Model::file) {
+    for (const WavelengthShare& w : band_) add(file_kernel(place, w.wavelength_m), w.share);
+    PsfKernel kernel{plan_.half_cells, std::vector<float>(sum.size())};
+    std::ranges::transform(sum, kernel.values.begin(), [](double v) { return float(v); });
+    return kernel;
+  }
   if (optics_.spread.model == Model::gaussian &&
       (optics_.spread.varying.any() || optics_.spread.drift.any())) {
     for (const WavelengthShare& w : band_) add(gaussian_kernel(place, w.wavelength_m), w.share);

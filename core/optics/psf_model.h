@@ -1,16 +1,18 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "core/optics/frozen_flow.h"
 #include "core/optics/psf_plan.h"
 #include "core/optics/pupil_sampling.h"
+#include "core/optics/waves/frozen_flow.h"
 
 namespace dmise {
 
 /// Computes the kernels of a plan on the cells of its oversampled grid:
-///  diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
+///  diffraction (obscuration, spiders, wavefront) x turbulence x jitter, or the images of a file,
+/// over the wavelengths,
 /// divided by the Gaussian of `grid_sigma_cells` of deposits on the grid, and not integrated over
 /// cells, because deposits are. With bilinear resampling, multiplied by pixel / cell. A kernel
 /// tapers off over the outer half of its radius. Aberrations of the pupil do not move the centroid:
@@ -23,8 +25,13 @@ class PsfModel {
   PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
            const std::optional<SensorSeeing>& seeing, const RngKey& turbulence);
 
+  /// The model of a source that is out of focus: `optics` with its defocus, by `plan`, through the
+  /// same air. A wavefront that is too steep for a pupil is taken as the disc of geometrical
+  /// optics, through the air of a long exposure.
+  PsfModel refocused(const Optics& optics, const PsfPlan& plan) const;
+
   /// Whether each exposure has its own kernels, for the air.
-  bool changes() const { return flow_.has_value(); }
+  bool changes() const { return flow_ != nullptr; }
 
   /// Sets the distance of the detector from the focus, the camera's and what it has drifted. It
   /// must be within that of the run.
@@ -41,6 +48,7 @@ class PsfModel {
   std::array<ZernikeTerm, 2> centring(const FieldPlace& place, std::size_t wavelength);
   PsfKernel round_kernel(double wavelength_m);
   double disc_otf(double nu_per_rad) const;
+  PsfKernel file_kernel(const FieldPlace& place, double wavelength_m) const;
   PsfKernel gaussian_kernel(const FieldPlace& place, double wavelength_m);
   PsfKernel pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,
                             const PhaseScreen* screen);
@@ -57,9 +65,9 @@ class PsfModel {
     std::size_t wavelength;
     std::array<ZernikeTerm, 2> tilt;
   };
-  std::vector<Centred> centred_;  // cache
-  PupilGrid screen_grid_{};       // at the plan's wavelength
-  std::optional<FrozenFlow> flow_;
+  std::vector<Centred> centred_;      // cache
+  PupilGrid screen_grid_{};           // at the plan's wavelength
+  std::shared_ptr<FrozenFlow> flow_;  // a function of time; shared by refocused models
 };
 
 }  // namespace dmise

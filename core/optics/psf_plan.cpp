@@ -42,6 +42,7 @@ Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seein
   const double px_per_m = 1.0 / o.f_number() / o.pixel_pitch_m;
   m.widest_px = (std::abs(s.defocus_m) + s.drift.most_m()) * px_per_m;
   if (s.model == Model::gaussian) {
+    m.defocus_px = std::abs(s.defocus_m) * px_per_m;
     m.airy_px = fwhm_per_sigma * psf_sigma_px(o, wavelength_m);
     m.cutoff_per_px = gaussian_end / psf_sigma_px(o, wavelength_m);
     if (s.varying.any()) {
@@ -51,6 +52,13 @@ Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seein
       m.cutoff_per_px = gaussian_end / range.least_px;
       m.widest_px += 5.0 * fwhm_per_sigma * range.most_px;
     }
+    return m;
+  }
+  if (s.model == Model::file) {
+    m.defocus_px = std::abs(s.defocus_m) * px_per_m;
+    m.jitter_px = fwhm_per_sigma * s.jitter_rad / pixel_rad;
+    m.airy_px = s.measured->fwhm_px();
+    m.cutoff_per_px = s.measured->cutoff_per_px();
     return m;
   }
   if (s.varying.any()) m.widest_px += 2.0 * field_spot_px(o);
@@ -97,7 +105,7 @@ int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* ai
 
 double PointSpread::cost_s(int level, const PlanFacts& f) {
   const bool transforms = (f.scene.diffracts && !f.air.still_is_deposited) || f.scene.blur_varies ||
-                          f.scene.focus_drifts;
+                          f.scene.focus_drifts || f.scene.blur_of_file;
   return transforms ? level * PlanFacts::transform_pixel_s * f.pixels() : 0.0;
 }
 
@@ -120,10 +128,11 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   plan.fwhm_px = width_px(of_width);
 
   const bool plain = s.model == Model::gaussian;
-  const bool even = !s.varying.any() && !s.drift.any();
-  const bool narrow = !plain && width_px(m) < narrow_px && !is_aberrated(s);
+  const bool even = !s.varying.any() && !s.drift.any() && !(plain && s.defocus_m != 0.0);
+  const bool of_file = s.model == Model::file;
+  const bool narrow = s.model == Model::diffraction && width_px(m) < narrow_px && !is_aberrated(s);
   if (s.method == Method::deposit && !even)
-    refuse("method", "deposit is for a blur without psf_field and focus_drift");
+    refuse("method", "deposit is for a blur without psf_field, focus_drift and focus_distance_m");
   if (s.method == Method::deposit && !plain && !narrow)
     refuse("method", "deposit is for psf: gaussian, or a blur below 0.25 px");
   if (even &&
@@ -134,6 +143,8 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
 
   const int least = std::max(1, int(std::ceil(m.cutoff_per_px / most_cycles_per_cell - 1e-9)));
   plan.oversampling = s.oversampling > 0 ? s.oversampling : least;
+  // Pixels that are in the images are those about the centres of cells.
+  if (of_file && s.measured->with_pixel() && plan.oversampling % 2 == 0) ++plan.oversampling;
   if (plan.oversampling > largest_oversampling)
     refuse("oversampling", "the blur needs " + std::to_string(plan.oversampling) +
                                " cells a pixel, more than " + std::to_string(largest_oversampling) +
@@ -142,9 +153,11 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
     refuse("oversampling", "must be at least " + std::to_string(least) +
                                " to sample the blur, got " + std::to_string(plan.oversampling));
   const double cells = double(plan.oversampling) * plan.oversampling * o.columns * o.rows;
-  plan.method = s.method != Method::automatic                    ? s.method
-                : cells <= largest_grid_cells || s.varying.any() ? Method::transform
-                                                                 : Method::direct;
+  plan.method = s.method != Method::automatic ? s.method
+                : cells <= largest_grid_cells || s.varying.any() ||
+                        (of_file && s.grid_columns * s.grid_rows > 1)
+                    ? Method::transform
+                    : Method::direct;
   // Wide kernels are cheap for a transform, expensive for sums and screens.
   const bool cheap = plan.method == Method::transform && short_screens == 0;
   const double airy_widths = cheap ? 64.0 : 24.0;
@@ -153,22 +166,26 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   const double support_px =
       s.support_px > 0 ? s.support_px
       : plain          ? 5.0 * plan.fwhm_px
-              : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * full_width_px);
+      : of_file ? s.measured->reach_px() + double(MeasuredPsf::margin_cells) / plan.oversampling
+                : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * full_width_px);
   // The defocus disc must be within the inner half, which does not taper.
   const double disc_px = even ? m.defocus_px : m.widest_px;
   const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * disc_px * plan.oversampling;
-  if (disc_cells > widest_half_cells)
-    refuse(even            ? "defocus_m"
-           : s.drift.any() ? "focus_drift"
-                           : "psf_field",
-           (even ? "its disc of " : "its blur of ") + std::to_string(std::lround(disc_px)) +
-               " px is wider than a kernel holds, " +
-               std::to_string(int(widest_half_cells / 1.05 / plan.oversampling)) + " px");
-  const int half = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, usual_half_cells);
+  if (disc_cells > widest_half_cells) {
+    const bool still = !s.varying.any() && !s.drift.any();
+    const char* key = !still ? s.drift.any() ? "focus_drift" : "psf_field"
+                      : std::isfinite(s.focus_distance_m) ? "focus_distance_m"
+                                                          : "defocus_m";
+    refuse(key, (still ? "its disc of " : "its blur of ") + std::to_string(std::lround(disc_px)) +
+                    " px is wider than a kernel holds, " +
+                    std::to_string(int(widest_half_cells / 1.05 / plan.oversampling)) + " px");
+  }
+  const int half = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8,
+                              of_file ? widest_half_cells : usual_half_cells);
   plan.half_cells = std::max(half, int(std::ceil(disc_cells)));
   // Beyond r: 0.2 (lambda / D) / r of an Airy pattern, more with an obscuration; the kernel tapers
   // off around three quarters of its radius.
-  if (!plain)
+  if (s.model == Model::diffraction)
     plan.beyond = std::min(1.0, 0.2 * m.airy_px / (1.0 - o.obscuration) /
                                     (0.75 * plan.half_cells / plan.oversampling));
   if (s.grid_columns * s.grid_rows > 1 && plan.method == Method::direct)
@@ -181,6 +198,44 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                             " million in this frame, more than " +
                             std::to_string(std::lround(1e-6 * largest_field_cells)) + " million");
   return plan;
+}
+
+PsfPlan plan_defocused(const Optics& optics, double wavelength_m, const PsfPlan& in_focus,
+                       double disc_px) {
+  PsfPlan plan = in_focus;
+  if (in_focus.method == Method::deposit) {
+    const double cutoff_per_px = gaussian_end / psf_sigma_px(optics, wavelength_m);
+    const int least = int(std::ceil(cutoff_per_px / most_cycles_per_cell - 1e-9));
+    plan.oversampling = std::clamp(least, 1, largest_oversampling);
+    plan.half_cells = int(std::ceil(5.0 * plan.fwhm_px * plan.oversampling));
+    plan.exposure = ExposureKind::none;  // its width is in the Gaussian's
+    plan.screens = 0;
+  }
+  plan.method = Method::transform;
+  // What is wide is not sharp: a disc of d px falls off as (d nu)^(-3/2).
+  constexpr double fine_disc_px = 64.0;
+  constexpr int enough = 4, step = 16;
+  const int of_disc = std::max(enough, int(fine_disc_px / std::max(disc_px, 1e-3)));
+  const int held = std::max(1, int(widest_half_cells / (1.05 * std::max(disc_px, 1.0))));
+  const int cells = std::min({plan.oversampling, of_disc, held});
+  const double disc_cells = 1.05 * disc_px * cells;
+  plan.half_cells = plan.half_cells * cells / plan.oversampling;
+  plan.oversampling = cells;
+  plan.half_cells = std::max({8, plan.half_cells, int(std::ceil(disc_cells / step)) * step});
+  plan.half_cells = std::min(plan.half_cells, widest_half_cells);
+  return plan;
+}
+
+Optics blurred_by(const PsfPlan& plan, const Optics& optics) {
+  if (plan.method != Method::deposit) return optics;
+  // Narrower, it would take more cells than `largest_oversampling`.
+  const double fwhm_px = std::max(plan.fwhm_px, narrow_px);
+  const double diffraction_px = fwhm_per_sigma * diffraction_sigma_px(optics, plan.wavelength_m);
+  Optics blurred = optics;
+  blurred.spread = {};
+  blurred.psf_fwhm_px =
+      std::sqrt(std::max(0.0, fwhm_px * fwhm_px - diffraction_px * diffraction_px));
+  return blurred;
 }
 
 }  // namespace dmise

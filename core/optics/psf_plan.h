@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "core/optics/air_turbulence.h"
 #include "core/optics/camera.h"
-#include "core/optics/seeing.h"
+#include "core/optics/waves/air_turbulence.h"
+#include "core/optics/waves/seeing.h"
 
 namespace dmise {
 
@@ -25,6 +25,8 @@ struct PsfPlan {
   int half_cells = 0;    // of the kernel
   double fwhm_px = 0.0;  // of diffraction, seeing, jitter and defocus in quadrature
   double beyond = 0.0;   // fraction of light beyond the kernel's end, redistributed
+  /// Defocus is the disc of geometrical optics, also of a pupil: its wavefront is too steep.
+  bool geometric = false;
 };
 
 /// Chooses the method by the width of the blur relative to the pixel:
@@ -38,6 +40,15 @@ struct PsfPlan {
 PsfPlan plan_psf(const Optics& optics, double wavelength_m,
                  const std::optional<SensorSeeing>& seeing, double exposure_s,
                  AirTurbulence::Level turbulence = AirTurbulence::short_exposure);
+
+/// Plan of the kernels of a source that is out of focus by a disc of `disc_px`, from that of the
+/// camera's: cells no finer than such a disc needs, and at least a pixel large, so that a kernel
+/// holds it. `optics`: as `blurred_by` returns them. A disc is no wider than `widest_disc_px`.
+PsfPlan plan_defocused(const Optics& optics, double wavelength_m, const PsfPlan& in_focus,
+                       double disc_px);
+/// The optics of which kernels of a plan are: where light is deposited, a Gaussian of its width.
+Optics blurred_by(const PsfPlan& plan, const Optics& optics);
+inline constexpr double widest_disc_px = 975.0;
 
 inline constexpr double largest_grid_cells = 40e6;
 /// Of a blur that changes over the field, which is transformed in any case.

@@ -21,7 +21,7 @@ constexpr int still_samples = 128, turbulent_samples = 48;
 bool needs_pupil(const PointSpread& s, const PsfPlan& plan) {
   const bool aberrated = s.spiders != 0 || !s.wavefront.empty() || s.defocus_m != 0.0 ||
                          !s.varying.wavefront.empty() || s.drift.any();
-  return has_screens(plan) || (s.model != Model::gaussian && (aberrated || s.field.any()));
+  return has_screens(plan) || (s.model == Model::diffraction && (aberrated || s.field.any()));
 }
 
 /// The steepest slope over the field. Terms grow outwards, so centre and corners suffice.
@@ -64,9 +64,11 @@ std::string steepest_key(const Optics& optics, double wavelength_m) {
   defocus.spread.defocus_m = optics.spread.defocus_m;
   drift.spread.drift = optics.spread.drift;
   varying.spread.varying = optics.spread.varying;
+  const char* defocus_key =
+      std::isfinite(optics.spread.focus_distance_m) ? "focus_distance_m" : "defocus_m";
   const std::pair<const char*, const Optics*> parts[] = {{"zernike_nm", &wavefront},
                                                          {"field_nm", &field},
-                                                         {"defocus_m", &defocus},
+                                                         {defocus_key, &defocus},
                                                          {"focus_drift", &drift},
                                                          {"psf_field", &varying}};
   std::string largest;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/optics/psf_plan.h"
-#include "core/optics/pupil.h"
+#include "core/optics/waves/pupil.h"
 
 namespace dmise {
 

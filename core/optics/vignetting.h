@@ -2,7 +2,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/monotone_cubic.h"
+#include "core/base/numeric/monotone_cubic.h"
 #include "core/base/pixel.h"
 #include "core/effects/effects.h"
 #include "core/optics/field_radius.h"

@@ -79,6 +79,11 @@ Rotation<Gcrs, Body> attitude_of(const SpinningAttitude& attitude, const Attitud
                                rotated(Vec<Body>{0, 0, 1}, axis, angle_rad));
 }
 
+Rotation<Gcrs, Body> attitude_of(const TumblingAttitude& attitude, const AttitudeScene& scene) {
+  return attitude.gcrs_from_body *
+         rotation_of<Body, Body>(attitude.rotation.first_from_now(scene.time_s));
+}
+
 Quaternion between(const Quaternion& a, Quaternion b, double u) {
   double cosine = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
   if (cosine < 0) {  // q and -q are one attitude: take the short way

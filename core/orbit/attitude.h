@@ -6,10 +6,10 @@
 
 #include "core/frames/quaternion.h"
 #include "core/frames/vec.h"
+#include "core/orbit/torque_free.h"
 
 namespace dmise {
 
-struct Body {};   // axes fixed to an object's body
 struct Panel {};  // axes of a panel: z its normal, x its hinge
 
 /// z to the Earth's centre, y against the orbit's normal, x forward (the local orbital frame).
@@ -31,6 +31,12 @@ struct SpinningAttitude {
   double rate_rad_per_s = 0.0;          // right-handed about the axis
 };
 
+/// Turns freely: a rigid body on which no torque acts.
+struct TumblingAttitude {
+  Rotation<Gcrs, Body> gcrs_from_body;  // at time 0
+  TorqueFreeRotation rotation;
+};
+
 /// Great-circle interpolation between attitudes at increasing times.
 struct TableAttitude {
   std::vector<double> time_s;
@@ -45,7 +51,7 @@ struct NodeAttitude {
 
 /// To add a model: list it here, give it an overload in attitude.cpp, test it in tests/orbit.
 using Attitude = std::variant<NadirAttitude, SunYawAttitude, InertialAttitude, SpinningAttitude,
-                              TableAttitude, NodeAttitude>;
+                              TumblingAttitude, TableAttitude, NodeAttitude>;
 
 /// Inputs of an attitude model.
 struct AttitudeScene {

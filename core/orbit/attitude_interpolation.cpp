@@ -1,18 +1,11 @@
 #include "core/orbit/attitude_interpolation.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dmise {
 
 namespace {
-
-Quaternion product(const Quaternion& a, const Quaternion& b) {
-  return {
-      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
-}
-
-Quaternion conjugate(const Quaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
 
 Quaternion normalised(const Quaternion& q) {
   double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -56,9 +49,11 @@ AttitudeState attitude_state(const Attitude& attitude, const AttitudeScene& befo
   AttitudeState state{.gcrs_from_body = normalised(quaternion_of(r))};
   if (const auto* spin = std::get_if<SpinningAttitude>(&attitude)) {
     state.rate_rad_per_s = r * (unit(spin->axis) * spin->rate_rad_per_s);
+  } else if (const auto* tumbling = std::get_if<TumblingAttitude>(&attitude)) {
+    state.rate_rad_per_s = r * tumbling->rotation.rate_rad_per_s(now.time_s);
   } else if (after.time_s > before.time_s) {
-    const Quaternion moved = product(quaternion_of(gcrs_from_body(attitude, after)),
-                                     conjugate(quaternion_of(gcrs_from_body(attitude, before))));
+    const Quaternion moved = quaternion_of(gcrs_from_body(attitude, after)) *
+                             conjugate(quaternion_of(gcrs_from_body(attitude, before)));
     state.rate_rad_per_s = rotation_vector(moved) / (after.time_s - before.time_s);
   }
   return state;
@@ -66,16 +61,32 @@ AttitudeState attitude_state(const Attitude& attitude, const AttitudeScene& befo
 
 Quaternion interpolate_attitude(double u, double tick_s, const AttitudeState& start,
                                 const AttitudeState& end) {
-  const Quaternion steady =
-      product(rotation_by(start.rate_rad_per_s * tick_s), start.gcrs_from_body);
-  const Quaternion left_over = product(end.gcrs_from_body, conjugate(steady));
+  const Quaternion steady = rotation_by(start.rate_rad_per_s * tick_s) * start.gcrs_from_body;
+  const Quaternion left_over = end.gcrs_from_body * conjugate(steady);
   const Vec<Gcrs> rest = rotation_vector(left_over);
   const Vec<Gcrs> rest_slope =
       rotation_vector_rate(rest, end.rate_rad_per_s - rotated(left_over, start.rate_rad_per_s));
   const Vec<Gcrs> part = rest * (u * u * (3 - 2 * u)) + rest_slope * (u * u * (u - 1) * tick_s);
-  return normalised(
-      product(rotation_by(part),
-              product(rotation_by(start.rate_rad_per_s * (u * tick_s)), start.gcrs_from_body)));
+  return normalised(rotation_by(part) *
+                    (rotation_by(start.rate_rad_per_s * (u * tick_s)) * start.gcrs_from_body));
+}
+
+double worst_interpolation_rad(const TumblingAttitude& attitude, double tick_s, int ticks) {
+  const auto state = [&](double time_s) {
+    const AttitudeScene scene{.time_s = time_s};
+    return attitude_state(attitude, scene, scene, scene);
+  };
+  const double period_s = attitude.rotation.rate_period_s();
+  const double step_s = std::isfinite(period_s) ? period_s / ticks : tick_s;
+  double worst_rad = 0.0;
+  for (int k = 0; k < ticks; ++k) {
+    const double start_s = k * step_s;
+    const Quaternion between =
+        interpolate_attitude(0.5, tick_s, state(start_s), state(start_s + tick_s));
+    const Quaternion off = between * conjugate(state(start_s + tick_s / 2).gcrs_from_body);
+    worst_rad = std::max(worst_rad, norm(rotation_vector(off)));
+  }
+  return worst_rad;
 }
 
 }  // namespace dmise

@@ -10,8 +10,8 @@ struct AttitudeState {
 };
 
 /// Attitude in the scene `now`; its rate is the difference between the scenes `before` and `after`,
-/// a fraction of a second apart (less than half a turn). The rate of a spinning body is the
-/// model's, at any speed. Throws as `gcrs_from_body` does.
+/// a fraction of a second apart (less than half a turn). The rates of spinning and
+/// tumbling bodies are the models', at any speed. Throws as `gcrs_from_body` does.
 AttitudeState attitude_state(const Attitude& attitude, const AttitudeScene& before,
                              const AttitudeScene& now, const AttitudeScene& after);
 
@@ -21,5 +21,9 @@ AttitudeState attitude_state(const Attitude& attitude, const AttitudeScene& befo
 /// in the tick.
 Quaternion interpolate_attitude(double u, double tick_s, const AttitudeState& start,
                                 const AttitudeState& end);
+
+/// Greatest angle [rad] between a tumbling body and what is interpolated half way between ticks,
+/// over `ticks` ticks that begin all over one period of its rate.
+double worst_interpolation_rad(const TumblingAttitude& attitude, double tick_s, int ticks = 64);
 
 }  // namespace dmise

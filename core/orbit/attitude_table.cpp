@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/orbit/time_table.h"
 
 namespace dmise {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/orbit/interpolation.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/time/julian_date.h"
 
 namespace dmise {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/frames/geodesy.h"
 #include "core/orbit/time_table.h"
 

@@ -38,8 +38,8 @@ struct NodeMotion {
 };
 
 /// Motion of one object of a scenario. Element sets are propagated in batches by
-/// core/orbit/sgp4_batch. To add a model: write its file pair, list it here, give it a `state_at`,
-/// read it in core/config/motion_config.cpp, test it in tests/orbit.
+/// core/orbit/sgp4/sgp4_batch. To add a model: write its file pair, list it here, give it a
+/// `state_at`, read it in core/config/objects/motion_config.cpp, test it in tests/orbit.
 using MotionModel = std::variant<ConstantPosition<Itrs>, ConstantPosition<Gcrs>, TwoBodyMotion,
                                  Trajectory, StraightMotion<Itrs>, NodeMotion>;
 

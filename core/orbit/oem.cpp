@@ -4,25 +4,20 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <optional>
 #include <pugixml.hpp>
 #include <utility>
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text_fields.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_fields.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
-#include "core/orbit/epoch.h"
+#include "core/orbit/time_system.h"
 
 namespace dmise {
 
 namespace {
-
-/// Time systems other than UTC, and TAI minus each [s]; TDB and TT differ by up to 2 ms more.
-constexpr std::pair<std::string_view, double> time_systems[] = {
-    {"TAI", 0.0}, {"TT", -32.184}, {"GPS", 19.0}, {"TDB", -32.184}};
 
 /// A line of an OEM in KVN, and its number in the file.
 struct OemLine {
@@ -140,8 +135,7 @@ class OemReader {
  private:
   struct Declared {
     bool frame = false, time = false, eme2000 = false;
-    std::optional<double> tai_minus_system_s;  // none: UTC
-    bool is_tdb = false;
+    TimeSystem system;
     std::string usable_start, usable_stop;
   };
 
@@ -204,14 +198,10 @@ class OemReader {
   }
 
   void set_time_system(const std::string& system) {
+    const auto known = time_system(system);
+    if (!known) fail("TIME_SYSTEM is not supported", system);
     declared_.time = true;
-    declared_.tai_minus_system_s.reset();
-    if (system == "UTC") return;
-    const auto* known =
-        std::ranges::find(time_systems, system, [](const auto& s) { return s.first; });
-    if (known == std::end(time_systems)) fail("TIME_SYSTEM is not supported", system);
-    declared_.tai_minus_system_s = known->second;
-    declared_.is_tdb = system == "TDB";
+    declared_.system = *known;
   }
 
   void check_metadata() const {
@@ -219,20 +209,10 @@ class OemReader {
     if (!declared_.time) fail("segment without TIME_SYSTEM", "META_STOP");
   }
 
-  Tai tai_of(std::string_view text) const {
-    const auto time = parse_calendar_time(text);
+  Tai time_of(std::string_view text) const {
+    const auto time = tai_of(text, declared_.system);
     if (!time) fail("not a time", text);
-    if (!declared_.tai_minus_system_s) {
-      const auto utc = parse_iso_epoch(text);
-      Tai tai;
-      if (!utc || eraUtctai(utc->jd1, utc->jd2, &tai.jd1, &tai.jd2) < 0) fail("not a time", text);
-      return tai;
-    }
-    const double of_day = time->second_of_day / day_s;
-    const double tdb_minus_tt_s =
-        declared_.is_tdb ? eraDtdb(time->midnight_jd, of_day, of_day, 0.0, 0.0, 0.0) : 0.0;
-    return {time->midnight_jd,
-            (time->second_of_day + *declared_.tai_minus_system_s - tdb_minus_tt_s) / day_s};
+    return *time;
   }
 
   void add_state(std::string_view line) {
@@ -247,7 +227,7 @@ class OemReader {
       rest = end == std::string_view::npos ? std::string_view{} : trimmed(rest.substr(end));
     }
     if (count != 7 && count != 10) fail("expected a time and 6 or 9 numbers", line);
-    const Tai time = tai_of(fields[0]);
+    const Tai time = time_of(fields[0]);
     if (trajectory_.segments.empty() && s.time_s.empty()) trajectory_.reference = time;
     std::array<double, 6> value{};
     for (std::size_t i = 0; i < 6; ++i) {
@@ -280,11 +260,12 @@ class OemReader {
     s.usable_start_s = s.time_s.front();
     s.usable_stop_s = s.time_s.back();
     if (!declared_.usable_start.empty())
-      s.usable_start_s = std::max(
-          s.usable_start_s, seconds_between(trajectory_.reference, tai_of(declared_.usable_start)));
+      s.usable_start_s =
+          std::max(s.usable_start_s,
+                   seconds_between(trajectory_.reference, time_of(declared_.usable_start)));
     if (!declared_.usable_stop.empty())
       s.usable_stop_s = std::min(
-          s.usable_stop_s, seconds_between(trajectory_.reference, tai_of(declared_.usable_stop)));
+          s.usable_stop_s, seconds_between(trajectory_.reference, time_of(declared_.usable_stop)));
     trajectory_.segments.push_back(std::move(s));
     segment_.reset();
   }

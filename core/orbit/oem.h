@@ -21,12 +21,12 @@ struct OemSegment {
   int degree = 7;
   double usable_start_s = 0.0;  // since the trajectory's reference
   double usable_stop_s = 0.0;
-  std::vector<double> time_s;            // since the trajectory's reference, increasing
-  std::vector<Vec<OemAxes>> position_m;  // in `frame`
-  std::vector<Vec<OemAxes>> velocity_m_per_s;
+  std::vector<double> time_s;                  // since the trajectory's reference, increasing
+  std::vector<Vec<OemAxes>> position_m;        // in `frame`
+  std::vector<Vec<OemAxes>> velocity_m_per_s;  // empty: the slopes of the positions
 };
 
-/// A trajectory from a CCSDS Orbit Ephemeris Message (502.0-B).
+/// A trajectory from a file: a CCSDS Orbit Ephemeris Message (502.0-B), an SP3 or a track.
 struct Trajectory {
   std::string source;  // for messages
   Tai reference;       // first ephemeris time

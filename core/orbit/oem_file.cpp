@@ -5,12 +5,12 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/files/paths.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 #include "core/base/formatted.h"
-#include "core/base/paths.h"
 #include "core/base/printable_ascii.h"
-#include "core/base/text_file.h"
 #include "core/base/units.h"
-#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/epoch.h"
 #include "core/orbit/oem.h"
 
 namespace dmise {
@@ -47,6 +47,8 @@ MotionState<OemAxes> interpolated(const OemSegment& s, double t_s, Velocity velo
                                                           : s.degree + 1;
   const int size = static_cast<int>(s.time_s.size());
   count = std::min(count, size);
+  const bool listed =
+      !s.velocity_m_per_s.empty() && (velocity == Velocity::as_listed || count == 1);
   const auto after = std::upper_bound(s.time_s.begin(), s.time_s.end(), t_s);
   const int interval = std::max(0, static_cast<int>(after - s.time_s.begin()) - 1);
   const int first = std::clamp(interval - (count - 1) / 2, 0, size - count);
@@ -56,9 +58,8 @@ MotionState<OemAxes> interpolated(const OemSegment& s, double t_s, Velocity velo
     const Basis b = lagrange_basis(s.time_s.data() + first, count, k, t_s);
     if (!hermite) {
       state.position_m += s.position_m[i] * b.value;
-      state.velocity_m_per_s += velocity == Velocity::as_listed || count == 1
-                                    ? s.velocity_m_per_s[i] * b.value
-                                    : s.position_m[i] * b.slope;
+      state.velocity_m_per_s +=
+          listed ? s.velocity_m_per_s[i] * b.value : s.position_m[i] * b.slope;
       continue;
     }
     const double dt_s = t_s - s.time_s[i], square = b.value * b.value;

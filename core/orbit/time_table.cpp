@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/text_fields.h"
+#include "core/base/files/text_fields.h"
 
 namespace dmise {
 

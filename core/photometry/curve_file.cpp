@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text_fields.h"
+#include "core/base/files/text_fields.h"
 #include "core/base/units.h"
 
 namespace dmise {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace dmise {
@@ -15,6 +16,8 @@ enum class MagnitudeSystem : std::uint8_t { v_solar, vega, ab };
 
 /// Their names in products and cameras, in the order of the enumeration.
 inline constexpr std::array<const char*, 3> magnitude_system_names{"V-solar", "Vega", "AB"};
+
+constexpr std::span<const char* const> names_of(MagnitudeSystem) { return magnitude_system_names; }
 
 constexpr const char* magnitude_system_name(MagnitudeSystem system) {
   return magnitude_system_names[std::size_t(system)];

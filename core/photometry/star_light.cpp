@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/vector_math.h"
+#include "core/base/numeric/vector_math.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <span>
 
-#include "core/base/table_place.h"
+#include "core/base/numeric/table_place.h"
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
 

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 #include "core/base/module.h"
 #include "core/base/printable.h"
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
 #include "core/pictures/picture_codec.h"
 
 namespace dmise {

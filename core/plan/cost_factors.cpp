@@ -3,10 +3,10 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/files/paths.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/user_directories.h"
 #include "core/base/formatted.h"
-#include "core/base/paths.h"
-#include "core/base/text_file.h"
-#include "core/base/user_directories.h"
 
 namespace dmise {
 std::string cost_factors_path() {

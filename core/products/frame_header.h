@@ -16,7 +16,7 @@
 #include "core/products/detection.h"
 #include "core/products/observation.h"
 #include "core/products/unknown_facts.h"
-#include "core/sky/refraction.h"
+#include "core/sky/air/refraction.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -75,6 +75,7 @@ struct FrameHeader {
 
   Exclusion exclusion;  // of the camera
   Excluded excluded;    // in this exposure
+  bool dark = false;    // the camera's cover or shutter was closed
 
   UnknownFacts unknown;  // none in a run's frames
 
@@ -91,7 +92,12 @@ struct FrameHeader {
   double v_solar_zero_point_mag() const { return zero_point_mag - magnitudes.solar_colour_mag; }
 
   /// Whether no light came in.
-  bool shutter_closed() const { return closes_shutter(exclusion, excluded); }
+  bool shutter_closed() const { return dark || closes_shutter(exclusion, excluded); }
+  /// "the shutter was closed because of the Moon", "a cover or shutter was closed".
+  std::string closed_text() const {
+    return dark ? "a cover or shutter was closed"
+                : "the shutter was closed because of " + excluding_text(excluded);
+  }
 
   bool operator==(const FrameHeader&) const = default;
 };

@@ -3,11 +3,12 @@
 #include <string>
 
 #include "core/base/sim_time.h"
+#include "core/base/units.h"
 #include "core/frames/vec.h"
 #include "core/optics/exclusion.h"
 #include "core/photometry/magnitude_system.h"
 #include "core/products/frame_notes.h"
-#include "core/wcs/wcs.h"
+#include "core/products/wcs_fields.h"
 
 namespace dmise {
 
@@ -44,5 +45,45 @@ struct FrameReport {
 
   bool operator==(const FrameReport&) const = default;
 };
+
+template <class V, MaybeConst<FrameReport> R>
+void visit_fields(V& v, R& r) {
+  const bool measured = !r.detection_off;
+  v("sensor", r.sensor);
+  v("frame", r.frame);
+  v("start", r.start);
+  v("middle", r.middle);
+  v("end", r.end);
+  v("boresight_ra_rad", r.boresight_ra_rad, "boresight_ra_deg", deg);
+  v("boresight_dec_rad", r.boresight_dec_rad, "boresight_dec_deg", deg);
+  v("wcs", r.wcs);
+  v("sensor_position_m", r.sensor_position_m, "sensor_position_gcrs_m");
+  v("sensor_velocity_m_per_s", r.sensor_velocity_m_per_s, "sensor_velocity_gcrs_m_per_s");
+  v.absent_unless(r.detection_off, "detection_off", r.detection_off);
+  v.absent_unless(r.shutter_closed, "shutter_closed", r.shutter_closed);
+  v.absent_unless(r.excluded.sun, "sun_excludes", r.excluded.sun);
+  v.absent_unless(r.excluded.moon, "moon_excludes", r.excluded.moon);
+  v.absent_unless(r.excluded.earth_limb, "earth_limb_excludes", r.excluded.earth_limb);
+  v.null_unless(measured && r.limiting_magnitude != 0.0, "limiting_magnitude",
+                r.limiting_magnitude);
+  v.null_unless(measured, "background_e", r.background_e);
+  v.null_unless(measured, "noise_e", r.noise_e);
+  v("zero_point_mag", r.zero_point_mag);
+  v("magnitude_system", r.magnitudes.system);
+  v.absent_unless(r.magnitudes.system != MagnitudeSystem::v_solar, "solar_colour_mag",
+                  r.magnitudes.solar_colour_mag);
+  v.null_unless(measured, "psf_fwhm_px", r.psf_fwhm_px);
+  v.null_unless(measured, "psf_stars", r.psf_stars);
+  v.null_unless(measured, "stars_expected", r.stars_expected);
+  v.null_unless(measured, "stars_found", r.stars_found);
+  v("detections", r.detections);
+  v.null_unless(measured, "star_like", r.star_like);
+  v.null_unless(measured, "saturated_px", r.saturated_px);
+  v("stars_rendered", r.stars_rendered);
+  v("objects_rendered", r.objects_rendered);
+  v("plan", r.plan);
+  v.notes("missing", r.notes.missing);
+  v.notes("assumed", r.notes.assumed);
+}
 
 }  // namespace dmise

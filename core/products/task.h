@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "core/base/sim_time.h"
-#include "core/frames/vec.h"
+#include "core/base/units.h"
+#include "core/products/product_fields.h"
 
 namespace dmise {
 
@@ -39,5 +40,35 @@ struct Task {
 
   bool operator==(const Task&) const = default;
 };
+
+template <class V, MaybeConst<Task> T>
+void visit_fields(V& v, T& t) {
+  v("id", t.id);
+  v("sensor", t.sensor);
+  v("track", t.track);
+  v("catalogue_number", t.catalogue_number);
+  v("name", t.name);
+  v("given", t.given);
+  v("start", t.start);
+  v("on_target", t.on_target);
+  v("end", t.end);
+  v("first_frame", t.first_frame);
+  v("exposures", t.exposures);
+  v("gain_nats", t.gain_nats);
+  v("gain_nats_per_s", t.gain_nats_per_s);
+  v("candidates", t.candidates);
+  v("runner_up", t.runner_up);
+  v("runner_up_nats_per_s", t.runner_up_nats_per_s);
+  v("in_field", t.in_field);
+  v("detection_probability", t.detection_probability);
+  v("sigma_rad", t.sigma_rad, "sigma_arcsec", arcsec);
+  v("slew_rad", t.slew_rad, "slew_deg", deg);
+  v("slew_s", t.slew_s);
+  v("covariance", t.covariance, "covariance_gcrs");
+  v("path_start", t.path_start);
+  v("path_step_s", t.path_step_s);
+  v("path_m", t.path_m, "path_gcrs_m");
+  v("path_m_per_s", t.path_m_per_s, "path_gcrs_m_per_s");
+}
 
 }  // namespace dmise

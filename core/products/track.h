@@ -6,6 +6,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
+#include "core/products/product_fields.h"
 
 namespace dmise {
 
@@ -14,8 +15,8 @@ enum class TrackStatus : std::uint8_t {
   confirmed,
   lost,  // ends here
 };
-/// "tentative", ...
-const char* track_status_name(TrackStatus status);
+inline constexpr std::array track_status_names{"tentative", "confirmed", "lost"};
+constexpr std::span<const char* const> names_of(TrackStatus) { return track_status_names; }
 
 /// What is known of one object at a tick, from the detections of all sensors up to it.
 struct Track {
@@ -40,5 +41,27 @@ struct Track {
 
   bool operator==(const Track&) const = default;
 };
+
+template <class V, MaybeConst<Track> T>
+void visit_fields(V& v, T& t) {
+  v("id", t.id);
+  v("status", t.status);
+  v("time", t.time);
+  v("position_m", t.position_m, "position_gcrs_m");
+  v("velocity_m_per_s", t.velocity_m_per_s, "velocity_gcrs_m_per_s");
+  v("covariance", t.covariance, "covariance_gcrs");
+  v("drag_m2_per_kg", t.drag_m2_per_kg);
+  v("drag_sigma_m2_per_kg", t.drag_sigma_m2_per_kg);
+  v("srp_m2_per_kg", t.srp_m2_per_kg);
+  v("srp_sigma_m2_per_kg", t.srp_sigma_m2_per_kg);
+  v("catalogue_number", t.catalogue_number);
+  v("name", t.name);
+  v("existence", t.existence);
+  v("detections", t.detections);
+  v("associated", t.associated);
+  v("innovation_d2", t.innovation_d2);
+  v("last_seen", t.last_seen);
+  v("magnitude", t.magnitude);
+}
 
 }  // namespace dmise

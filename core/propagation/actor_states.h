@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config/object_config.h"
+#include "core/config/objects/object_config.h"
 #include "core/sim/message.h"
 
 namespace dmise {

@@ -1,7 +1,7 @@
 #include "core/propagation/catalogue_states.h"
 
 #include "core/frames/earth_orientation.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/time/clock.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/orbit/elements.h"
+#include "core/orbit/elements/elements.h"
 #include "core/time/iers.h"
 #include "core/time/julian_date.h"
 

@@ -42,4 +42,20 @@ ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<Own
   return population;
 }
 
+ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices) {
+  ObjectPopulation some;
+  some.ellipsoid = all.ellipsoid;
+  for (const std::size_t i : indices) {
+    for (const auto& attitude : all.attitudes)
+      if (attitude.object == i)
+        some.attitudes.push_back({some.roster.objects.size(), attitude.model});
+    some.roster.objects.push_back(all.roster.objects[i]);
+    if (i < all.elements.size())
+      some.elements.push_back(all.elements[i]);
+    else
+      some.models.push_back(all.models[i - all.elements.size()]);
+  }
+  return some;
+}
+
 }  // namespace dmise

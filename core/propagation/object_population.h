@@ -1,10 +1,11 @@
 #pragma once
+#include <set>
 #include <string>
 #include <vector>
 
-#include "core/config/object_config.h"
+#include "core/config/objects/object_config.h"
 #include "core/orbit/attitude.h"
-#include "core/orbit/elements.h"
+#include "core/orbit/elements/elements.h"
 #include "core/orbit/motion.h"
 #include "core/sim/state.h"
 
@@ -35,5 +36,8 @@ ObjectRoster published_roster(const ObjectPopulation& population);
 /// is not one of a scenario with these objects.
 ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own,
                                const Ellipsoid& ellipsoid = wgs84, const ObjectModels& models = {});
+
+/// The subset of a population. `indices` ascend.
+ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices);
 
 }  // namespace dmise

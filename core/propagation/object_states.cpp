@@ -8,7 +8,7 @@
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/interpolation.h"
 #include "core/sim/columns.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {

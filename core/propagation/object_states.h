@@ -3,7 +3,7 @@
 #include <span>
 
 #include "core/base/parallel.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/propagation/actor_states.h"
 #include "core/propagation/object_population.h"
 #include "core/time/clock.h"

@@ -1,7 +1,7 @@
 #include "core/propagation/run_on.h"
 
 #include "core/base/units.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 
 namespace dmise {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/report/compact_bytes.h"
 
 namespace dmise {

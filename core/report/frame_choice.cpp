@@ -28,7 +28,7 @@ DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings
   double megapixels = 0.0;  // of a frame of each
   for (std::size_t s = 0; s < able.size(); ++s) {
     if (able[s].empty()) continue;
-    const auto& camera = run.sensors[s].camera_facts;
+    const auto& camera = run.sensors[s].sensor;
     ++sensors;
     megapixels += camera.columns > 0 ? 1e-6 * camera.columns * camera.rows : 8.0;
   }

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
-#include "core/base/quantile.h"
+#include "core/base/files/json.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/report/direction_grid.h"
@@ -50,7 +50,7 @@ void pixel(JsonWriter& json, PixelPosition p) {
 /// ascension and declination in orbit. The pole is that of ICRS, so azimuths are right to 0.2 deg.
 class SkyPlace {
  public:
-  SkyPlace(const ReportSensor& sensor, const Vec<Gcrs>& position_m) {
+  SkyPlace(const RunSensor& sensor, const Vec<Gcrs>& position_m) {
     if (!sensor.site || norm(position_m) == 0.0) return;
     const double latitude = sensor.site->latitude_deg * deg;
     const double turned = std::atan2(position_m.y, position_m.x);
@@ -98,7 +98,7 @@ std::string view_of(const RunContents& run, const ReportFrame& row, const StarMa
       json.field("sky", grid.sky);
     }
     json.end_object();
-    const SkyPlace place(run.sensors[row.sensor], row.sensor_position_m);
+    const SkyPlace place(run.sensors[row.sensor].sensor, row.sensor_position_m);
     json.key("outline").begin_array();
     constexpr int pieces = 8;  // of a side
     const double right = columns - 1, bottom = rows - 1;
@@ -137,12 +137,13 @@ void write_sensors(const RunContents& run, JsonWriter& json) {
   json.key("sensors").begin_array();
   for (std::size_t s = 0; s < run.sensors.size(); ++s) {
     const ReportSensor& sensor = run.sensors[s];
-    json.begin_object().field("name", sensor.name).field("camera", sensor.camera);
-    if (const auto& site = sensor.site)
+    const RunSensor& described = sensor.sensor;
+    json.begin_object().field("name", described.name).field("camera", described.camera);
+    if (const auto& site = described.site)
       json.list("site", {site->latitude_deg, site->longitude_deg, site->height_m});
-    if (!sensor.platform.empty()) json.field("platform", sensor.platform);
-    json.field("columns", sensor.camera_facts.columns).field("rows", sensor.camera_facts.rows);
-    json.field("exposure_s", sensor.exposure_s).field("cadence_s", sensor.cadence_s);
+    if (!described.platform.empty()) json.field("platform", described.platform);
+    json.field("columns", described.columns).field("rows", described.rows);
+    json.field("exposure_s", described.exposure_s).field("cadence_s", described.cadence_s);
     json.field("frames", sensor.frames);
     json.field("detections", sensor.detections);
     if (!sensor.log.empty()) json.field("log", sensor.log);
@@ -153,7 +154,7 @@ void write_sensors(const RunContents& run, JsonWriter& json) {
     number(json, "limiting_magnitude",
            limits[s].empty() ? std::nullopt : std::optional(middle_of(limits[s])), 2);
     for (const SensorScore& score : run.score.sensors) {
-      if (score.sensor != sensor.name || !run.has_truth) continue;
+      if (score.sensor != described.name || !run.has_truth) continue;
       json.key("fates").begin_object();
       for (std::size_t k = 0; k < fate_names.size(); ++k) json.field(fate_names[k], score.fates[k]);
       json.end_object();
@@ -178,7 +179,7 @@ void write_frames(const RunContents& run, const DrawnFrames& choice, JsonWriter&
     json.begin_object().field("sensor", f.sensor).field("number", f.number);
     json.field("time_s", rounded(f.middle.seconds(), 3)).field("utc", f.middle_utc);
     const auto [angle, height] =
-        SkyPlace(run.sensors[f.sensor], f.sensor_position_m)
+        SkyPlace(run.sensors[f.sensor].sensor, f.sensor_position_m)
             .of(from_spherical<Gcrs>(f.boresight_ra_rad, f.boresight_dec_rad));
     json.list("pointing", {angle, height});
     number(json, "limit", f.limiting_magnitude, 2);
@@ -220,7 +221,7 @@ void write_truths(const RunContents& run, const DrawnFrames& choice, JsonWriter&
     number(json, scored.snr, 2);
     json.value(rounded(t.truth.true_range_m / 1e3, 1));
     const auto [angle, height] =
-        SkyPlace(run.sensors[f.sensor], f.sensor_position_m)
+        SkyPlace(run.sensors[f.sensor].sensor, f.sensor_position_m)
             .of(from_spherical<Gcrs>(t.truth.apparent_ra_rad, t.truth.apparent_dec_rad));
     json.value(angle).value(height).end_array();
   }
@@ -308,7 +309,7 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
   for (const ReportTrack* t : tracks) {
     json.begin_object().field("id", t->last.id).field("name", t->last.name);
     json.field("number", t->last.catalogue_number);
-    json.field("status", track_status_name(t->last.status));
+    json.field("status", name_of(t->last.status));
     json.field("detections", t->last.detections).field("cues", t->cues);
     json.field("first_s", rounded(t->first_s, 3));
     json.field("last_s", rounded(t->last.time.seconds(), 3));
@@ -337,7 +338,7 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
 
 void write_clock(const RunContents& run, JsonWriter& json) {
   json.key("nodes").begin_array();
-  for (const NodeCost& n : run.nodes) {
+  for (const RunNode& n : run.record.nodes) {
     json.begin_object().field("name", n.name).field("compute_s", rounded(n.compute_s, 3));
     json.field("messaging_s", rounded(n.messaging_s, 3));
     json.field("waiting_s", rounded(n.waiting_s, 3)).field("start_s", rounded(n.start_s, 3));
@@ -363,12 +364,17 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
                         const ReportSettings& settings) {
   const DrawnFrames choice = choose_frames(run, settings);
   JsonWriter json;
-  json.begin_object().field("status", run.status.empty() ? "unknown" : run.status);
-  json.field("how", run.how).field("reason", run.reason).field("software", run.software);
-  json.field("digest", run.digest).field("seed", run.seed).field("start_utc", run.start_utc);
-  json.field("duration_s", run.duration_s).field("tick_s", run.tick_s);
-  number(json, "wall_s", run.wall_s, 2);
-  json.field("parts", run.parts);
+  json.begin_object().field("status", run.record.status.empty() ? "unknown" : run.record.status);
+  json.field("how", run.record.how)
+      .field("reason", run.record.reason)
+      .field("software", run.record.software);
+  json.field("digest", run.record.digest)
+      .field("seed", run.record.seed)
+      .field("start_utc", run.record.start_utc);
+  json.field("duration_s", run.record.duration.seconds())
+      .field("tick_s", run.record.tick.seconds());
+  number(json, "wall_s", run.record.wall_s, 2);
+  json.field("parts", run.record.parts);
   json.field("every", choice.every);
   json.field("source_every", choice.source_every);
   json.field("frame_count", run.frames.size());

@@ -3,7 +3,7 @@
 
 #include "core/base/parallel.h"
 #include "core/report/frame_choice.h"
-#include "core/sky/star_map.h"
+#include "core/sky/stars/star_map.h"
 
 namespace dmise {
 

@@ -6,119 +6,69 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/paths.h"
-#include "core/base/printable.h"
-#include "core/base/text_file.h"
+#include "core/base/files/json_record.h"
+#include "core/base/files/paths.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/products/frame_file.h"
-#include "core/score/json_record.h"
-#include "core/score/run_files.h"
+#include "core/products/product_json.h"
+#include "core/run/run_files.h"
+#include "core/score/scored_run.h"
 
 namespace dmise {
 namespace {
 
 namespace fs = std::filesystem;
 
-double number_or(const JsonRecord& record, const char* key, double otherwise) {
-  return record.has(key) ? record.number(key) : otherwise;
-}
-
 std::optional<double> optional_number(const JsonRecord& record, const char* key) {
   return record.has(key) ? std::optional(record.number(key)) : std::nullopt;
-}
-
-std::string text_or_empty(const JsonRecord& record, const char* key) {
-  return record.has(key) ? record.get<std::string>(key) : std::string();
-}
-
-ReportSensor sensor_of(const JsonRecord& record) {
-  return {.name = record.get<std::string>("name"),
-          .site = site_of(record),
-          .platform = text_or_empty(record, "platform"),
-          .camera = record.has("camera") ? text_or_empty(record.object("camera"), "name")
-                                         : "node " + text_or_empty(record, "node"),
-          .exposure_s = number_or(record, "exposure_s", 0.0),
-          .cadence_s = number_or(record, "cadence_s", 0.0),
-          .camera_facts = camera_of(record)};
-}
-
-/// run.json, which a run that was killed leaves as it began it: with its digest alone.
-void read_record(RunContents& run) {
-  const std::string path = run.directory + "/run.json";
-  if (!path_exists(path)) return;
-  const JsonRecord record(read_text_file(path), path);
-  run.status = record.get<std::string>("status");
-  run.how = text_or_empty(record, "how");
-  run.reason = text_or_empty(record, "reason");
-  run.software = text_or_empty(record, "software");
-  run.digest = text_or_empty(record, "digest");
-  run.wall_s = optional_number(record, "wall_s");
-  if (record.has("parts")) run.parts = record.get<int>("parts");
-  if (record.has("nodes"))
-    for (const JsonRecord& node : record.objects("nodes"))
-      run.nodes.push_back({node.get<std::string>("name"), number_or(node, "compute_s", 0.0),
-                           number_or(node, "messaging_s", 0.0), number_or(node, "waiting_s", 0.0),
-                           number_or(node, "start_s", 0.0)});
-  if (!record.has("scenario")) return;
-  if (record.has("seed")) run.seed = record.get<std::uint64_t>("seed");
-  const JsonRecord scenario = record.object("scenario");
-  const JsonRecord simulation = scenario.object("simulation");
-  run.start_utc = simulation.get<std::string>("start");
-  run.duration_s = simulation.time("duration_ns").seconds();
-  run.tick_s = simulation.time("tick_ns").seconds();
-  if (scenario.has("stars"))
-    run.star_catalogue = text_or_empty(scenario.object("stars"), "catalogue");
-  for (const JsonRecord& sensor : scenario.objects("sensors")) {
-    run.sensors.push_back(sensor_of(sensor));
-    if (const std::string& name = run.sensors.back().name;
-        name.empty() || name.find('/') != std::string::npos || name.starts_with('.'))
-      sensor.fail("name", "can't be the name of a directory: " + printable(name));
-  }
 }
 
 /// Adds sensors that have left frames and are not in run.json.
 void find_sensors(RunContents& run) {
   std::set<std::string> known, more;
-  for (const ReportSensor& s : run.sensors) known.insert(s.name);
+  for (const ReportSensor& s : run.sensors) known.insert(s.sensor.name);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(run.directory, error))
-    if (entry.is_directory(error) && path_exists((entry.path() / "frames.jsonl").string()) &&
+    if (entry.is_directory(error) &&
+        path_exists(path_in(entry.path().string(), run_file::frames)) &&
         !known.contains(entry.path().filename().string()))
       more.insert(entry.path().filename().string());
   if (error) throw ConfigError(run.directory + ": can't be read: " + error.message());
-  for (const std::string& name : more) run.sensors.push_back({.name = name});
+  for (const std::string& name : more) run.sensors.push_back({.sensor = {.name = name}});
 }
 
-ReportFrame frame_of(const JsonRecord& line, std::size_t sensor) {
+/// A number of a report that is null in its line where it was not measured.
+std::optional<double> measured(const FrameReport& report, double value) {
+  return report.detection_off ? std::nullopt : std::optional(value);
+}
+
+ReportFrame report_frame(const FrameReport& r, const std::string& middle_utc, std::size_t sensor) {
   ReportFrame f{.sensor = sensor,
-                .number = line.get<std::uint32_t>("frame"),
-                .middle = line.time("middle_ns"),
-                .middle_utc = text_or_empty(line, "middle_utc"),
-                .boresight_ra_rad = number_or(line, "boresight_ra_deg", 0.0) * deg,
-                .boresight_dec_rad = number_or(line, "boresight_dec_deg", 0.0) * deg,
-                .limiting_magnitude = optional_number(line, "limiting_magnitude"),
-                .background_e = optional_number(line, "background_e"),
-                .noise_e = optional_number(line, "noise_e")};
-  if (f.limiting_magnitude) *f.limiting_magnitude -= number_or(line, "solar_colour_mag", 0.0);
-  if (line.has("sensor_position_gcrs_m")) {
-    const auto p = line.numbers<3>("sensor_position_gcrs_m");
-    f.sensor_position_m = {p[0], p[1], p[2]};
-  }
-  for (const auto& [key, member] : {std::pair("stars_found", &ReportFrame::stars_found),
-                                    std::pair("stars_expected", &ReportFrame::stars_expected)})
-    if (line.has(key)) f.*member = line.get<std::uint32_t>(key);
+                .number = r.frame,
+                .middle = r.middle,
+                .middle_utc = middle_utc,
+                .boresight_ra_rad = r.boresight_ra_rad,
+                .boresight_dec_rad = r.boresight_dec_rad,
+                .sensor_position_m = r.sensor_position_m,
+                .background_e = measured(r, r.background_e),
+                .noise_e = measured(r, r.noise_e),
+                .stars_found = r.stars_found,
+                .stars_expected = r.stars_expected};
+  if (r.limiting_magnitude != 0.0)
+    f.limiting_magnitude = r.limiting_magnitude - r.magnitudes.solar_colour_mag;
   return f;
 }
 
 /// A line has the means over the `frames` up to its own.
 void add_cost(const JsonRecord& line, ReportSensor& sensor, ReportFrame* frame) {
-  const double total_s = line.number("total_s"), frames = number_or(line, "frames", 1.0);
+  const double total_s = line.number("total_s"), frames = line.get_or("frames", 1.0);
   sensor.seconds_per_frame += frames * total_s;
-  sensor.memory_mb = std::max(sensor.memory_mb, number_or(line, "pss_mb", 0.0));
+  sensor.memory_mb = std::max(sensor.memory_mb, line.get_or("pss_mb", 0.0));
   sensor.costs += std::size_t(frames);
   if (frame) frame->total_s = total_s;
-  sensor.effects["detection"].measured_s += frames * number_or(line, "detection_s", 0.0);
+  sensor.effects["detection"].measured_s += frames * line.get_or("detection_s", 0.0);
   if (line.has("effects_s"))
     for (const auto& [effect, seconds] : line.object("effects_s").all_numbers())
       sensor.effects[effect].measured_s += frames * seconds;
@@ -128,7 +78,7 @@ void add_cost(const JsonRecord& line, ReportSensor& sensor, ReportFrame* frame) 
   for (const auto& [effect, planned] : plan.object("effects").all_objects()) {
     EffectCost& cost = sensor.effects[effect];
     cost.levels[planned.get<std::string>("level")] += std::size_t(frames);
-    if (cost.why.empty()) cost.why = text_or_empty(planned, "why");
+    if (cost.why.empty()) cost.why = planned.get_or<std::string>("why", "");
     if (!planned.has("predicted_s")) continue;
     cost.predicted_s += frames * planned.number("predicted_s");
     cost.planned_frames += std::size_t(frames);
@@ -138,7 +88,7 @@ void add_cost(const JsonRecord& line, ReportSensor& sensor, ReportFrame* frame) 
 std::string key_of(const std::string& frame, const std::string& id) { return frame + "/" + id; }
 
 /// What run.json would have said of a sensor, from its first frame.
-void read_camera(const std::string& directory, ReportSensor& sensor) {
+void read_camera(const std::string& directory, RunSensor& sensor) {
   std::error_code ignored;
   std::vector<std::string> frames;
   for (const auto& entry : fs::directory_iterator(directory, ignored))
@@ -148,12 +98,12 @@ void read_camera(const std::string& directory, ReportSensor& sensor) {
   if (frames.empty()) return;
   try {
     const Frame frame = read_frame(*std::ranges::min_element(frames));
-    sensor.camera_facts.columns = frame.counts.columns;
-    sensor.camera_facts.rows = frame.counts.rows;
+    sensor.columns = frame.counts.columns;
+    sensor.rows = frame.counts.rows;
     sensor.camera = frame.header.observation.telescope;
     sensor.exposure_s = frame.header.exposure_s;
     if (const auto& site = frame.header.site)
-      sensor.site = {site->latitude_rad / deg, site->longitude_rad / deg, site->height_m};
+      sensor.site = Site{site->latitude_rad / deg, site->longitude_rad / deg, site->height_m};
   } catch (const Error&) {
     // It may be of another kind, such as sources, or cut short: the sensor stays without a size.
   }
@@ -162,27 +112,30 @@ void read_camera(const std::string& directory, ReportSensor& sensor) {
 /// Reads the lines of one sensor; those of a frame without a report are left out.
 void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
   ReportSensor& sensor = run.sensors[index];
-  const std::string directory = run.directory + "/" + sensor.name + "/";
+  const std::string& name = sensor.sensor.name;
+  const std::string directory = run.directory + "/" + name;
+  const auto lines_of = [&](const RunFile& file, const auto& take) {
+    const std::string path = path_in(directory, file);
+    const bool is_there = path_exists(path);
+    if (is_there) for_lines(path, quietly, take);
+    return is_there;
+  };
   std::map<std::uint32_t, std::size_t> places;
-  if (!path_exists(directory + "frames.jsonl")) return;
-  if (sensor.camera_facts.columns == 0) read_camera(directory, sensor);
-  for_lines(directory + "frames.jsonl", quietly, [&](const JsonRecord& line) {
-    ReportFrame f = frame_of(line, index);
+  if (!path_exists(path_in(directory, run_file::frames))) return;
+  if (sensor.sensor.columns == 0) read_camera(directory, sensor.sensor);
+  lines_of(run_file::frames, [&](const JsonRecord& line) {
+    FrameReport report = report_of(line);
+    report.sensor = name;
+    ReportFrame f = report_frame(report, line.get_or<std::string>("middle_utc", ""), index);
     for (const auto& [ending, member] :
          {std::pair(".fits", &ReportFrame::fits), std::pair(".png", &ReportFrame::picture),
           std::pair("-marked.png", &ReportFrame::marked)})
-      if (const std::string file = sensor.name + "/" + frame_file_name(f.number, ending);
+      if (const std::string file = name + "/" + frame_file_name(f.number, ending);
           path_exists(run.directory + "/" + file))
         f.*member = file;
     if (!places.emplace(f.number, run.frames.size()).second)
       line.fail("frame", "is there twice: " + std::to_string(f.number));
-    ScoredFrame scored = dmise::frame_of(line);
-    scored.sensor = sensor.name;
-    scored.columns = sensor.camera_facts.columns;
-    scored.rows = sensor.camera_facts.rows;
-    if (!scored.sigma_px) scored.sigma_px = sensor.camera_facts.sigma_px;
-    if (scored.columns == 0) scored.searched = false;
-    input.frames.push_back(std::move(scored));
+    input.frames.push_back(frame_of(report, sensor.sensor));
     run.frames.push_back(std::move(f));
     ++sensor.frames;
   });
@@ -190,42 +143,35 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
     const auto found = places.find(frame);
     return found == places.end() ? std::nullopt : std::optional(found->second);
   };
-  if (path_exists(directory + "truth.jsonl")) {
-    run.has_truth = true;
-    for_lines(directory + "truth.jsonl", quietly, [&](const JsonRecord& line) {
-      Truth truth = truth_of(line);
-      const auto frame = place_of(truth.frame);
-      if (!frame) return;
-      truth.sensor = sensor.name;
-      input.truths.push_back(source_of(truth));
-      run.truths.push_back({*frame, std::move(truth)});
-    });
-  }
-  if (path_exists(directory + "detections.jsonl"))
-    for_lines(directory + "detections.jsonl", quietly, [&](const JsonRecord& line) {
-      Detection d = detection_of(line);
-      const auto frame = place_of(d.frame);
-      if (!frame) return;
-      d.sensor = sensor.name;
-      ++sensor.detections;
-      input.detections.push_back(
-          {.sensor = sensor.name, .frame = std::to_string(d.frame), .detection = d});
-      run.detections.push_back({*frame, std::move(d)});
-    });
-  if (path_exists(directory + "cost.jsonl"))
-    for_lines(directory + "cost.jsonl", quietly, [&](const JsonRecord& line) {
-      const auto frame = place_of(line.get<std::uint32_t>("frame"));
-      add_cost(line, sensor, frame ? &run.frames[*frame] : nullptr);
-    });
+  run.has_truth |= lines_of(run_file::truth, [&](const JsonRecord& line) {
+    Truth truth = truth_of(line);
+    const auto frame = place_of(truth.frame);
+    if (!frame) return;
+    truth.sensor = name;
+    input.truths.push_back(source_of(truth));
+    run.truths.push_back({*frame, std::move(truth)});
+  });
+  lines_of(run_file::detections, [&](const JsonRecord& line) {
+    Detection d = detection_of(line);
+    const auto frame = place_of(d.frame);
+    if (!frame) return;
+    d.sensor = name;
+    ++sensor.detections;
+    input.detections.push_back({.sensor = name, .frame = std::to_string(d.frame), .detection = d});
+    run.detections.push_back({*frame, std::move(d)});
+  });
+  lines_of(run_file::costs, [&](const JsonRecord& line) {
+    const auto frame = place_of(line.get<std::uint32_t>("frame"));
+    add_cost(line, sensor, frame ? &run.frames[*frame] : nullptr);
+  });
   if (sensor.costs > 0) sensor.seconds_per_frame /= double(sensor.costs);
-  if (path_exists(run.directory + "/logs/" + sensor.name + ".log"))
-    sensor.log = "logs/" + sensor.name + ".log";
+  if (path_exists(run.directory + "/logs/" + name + ".log")) sensor.log = "logs/" + name + ".log";
 }
 
 /// Scores the run, and marks which truth was found and which detection is of a truth.
 void judge(RunContents& run, ScoreInput input) {
   input.source = run.directory;
-  input.status = run.status;
+  input.status = run.record.status;
   run.score = score(std::move(input), {});
   std::map<std::string, std::size_t> scored;
   for (std::size_t k = 0; k < run.score.truths.size(); ++k) {
@@ -243,8 +189,10 @@ void judge(RunContents& run, ScoreInput input) {
   for (ReportDetection& d : run.detections) d.of_truth = !false_alarms.contains(d.detection.id);
 }
 
-std::string first_of(const std::string& directory, const char* name) {
-  for (const std::string& path : {directory + "/" + name, directory + "/fusion-node/" + name})
+/// The path of what the fusion node has written, merged or in its own directory; empty: nothing.
+std::string of_fusion(const std::string& directory, const RunFile& file) {
+  for (const std::string& path :
+       {path_in(directory, file), path_in(directory + "/fusion-node", file)})
     if (path_exists(path)) return path;
   return "";
 }
@@ -252,7 +200,7 @@ std::string first_of(const std::string& directory, const char* name) {
 void read_tracks(RunContents& run) {
   constexpr std::size_t most_points = 400;  // of a track
   std::map<std::uint32_t, ReportTrack> tracks;
-  if (const std::string path = first_of(run.directory, "tracks.jsonl"); !path.empty())
+  if (const std::string path = of_fusion(run.directory, run_file::tracks); !path.empty())
     for_lines(path, quietly, [&](const JsonRecord& line) {
       const Track t = track_of(line);
       const auto [found, is_new] = tracks.try_emplace(t.id);
@@ -263,17 +211,9 @@ void read_tracks(RunContents& run) {
       const double variance = t.covariance[0] + t.covariance[2] + t.covariance[5];
       if (variance > 0.0) track.sigma_m.emplace_back(time_s, std::sqrt(variance));
     });
-  if (const std::string path = first_of(run.directory, "tasks.jsonl"); !path.empty())
+  if (const std::string path = of_fusion(run.directory, run_file::tasks); !path.empty())
     for_lines(path, quietly, [&](const JsonRecord& line) {
-      Task cue{.id = line.get<std::uint32_t>("id"),
-               .sensor = line.get<std::string>("sensor"),
-               .track = line.get<std::uint32_t>("track"),
-               .name = text_or_empty(line, "name"),
-               .on_target = line.time("on_target_ns"),
-               .end = line.time("end_ns"),
-               .exposures = line.get<std::uint32_t>("exposures"),
-               .gain_nats = line.number("gain_nats")};
-      cue.catalogue_number = line.get<std::uint32_t>("catalogue_number");
+      Task cue = task_of(line);
       if (const auto track = tracks.find(cue.track); track != tracks.end()) ++track->second.cues;
       run.cues.push_back(std::move(cue));
     });
@@ -300,8 +240,9 @@ void read_ticks(RunContents& run) {
     if (record.has("ticks"))
       for (const JsonRecord& tick : record.objects("ticks"))
         run.ticks.push_back({tick.get<Tick>("tick"), before_s + tick.number("granted_s"),
-                             before_s + tick.number("settled_s"), text_or_empty(tick, "last")});
-    before_s += number_or(record, "wall_s", 0.0);
+                             before_s + tick.number("settled_s"),
+                             tick.get_or<std::string>("last", "")});
+    before_s += record.get_or("wall_s", 0.0);
   };
   const std::string logs = run.directory + "/logs/master";
   const auto of_part = [&](int part) { return logs + "-" + std::to_string(part) + ".json"; };
@@ -310,9 +251,10 @@ void read_ticks(RunContents& run) {
 }
 
 void find_files(RunContents& run) {
-  for (const char* name : {"run.json", "frames.jsonl", "detections.jsonl", "truth.jsonl",
-                           "tracks.jsonl", "tasks.jsonl", "positions.csv", "positions.jsonl"})
-    if (path_exists(run.directory + "/" + name)) run.files.push_back(name);
+  for (const RunFile& file :
+       {run_file::record, run_file::frames, run_file::detections, run_file::truth, run_file::tracks,
+        run_file::tasks, run_file::positions_csv, run_file::positions})
+    if (path_exists(path_in(run.directory, file))) run.files.push_back(file.name);
   std::vector<std::string> logs;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(run.directory + "/logs", ignored))
@@ -325,7 +267,8 @@ void find_files(RunContents& run) {
 
 RunContents read_contents(const std::string& directory) {
   RunContents run{.directory = directory};
-  read_record(run);
+  if (auto record = read_run_record(directory)) run.record = std::move(*record);
+  for (const RunSensor& sensor : run.record.sensors) run.sensors.push_back({.sensor = sensor});
   find_sensors(run);
   ScoreInput input;
   for (std::size_t k = 0; k < run.sensors.size(); ++k) read_sensor(run, k, input);

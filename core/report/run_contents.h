@@ -9,7 +9,7 @@
 #include "core/products/task.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
-#include "core/score/run_files.h"
+#include "core/run/run_record.h"
 #include "core/score/score.h"
 
 namespace dmise {
@@ -23,11 +23,7 @@ struct EffectCost {
 };
 
 struct ReportSensor {
-  std::string name;
-  std::optional<Site> site;
-  std::string platform, camera;
-  double exposure_s = 0.0, cadence_s = 0.0;
-  ScoredFrame camera_facts;  // columns, rows, sigma_px
+  RunSensor sensor;
   std::size_t frames = 0, detections = 0;
   double seconds_per_frame = 0.0, memory_mb = 0.0;
   std::size_t costs = 0;  // frames of which the cost is known
@@ -75,21 +71,13 @@ struct ReportTick {
   std::string last;  // the node that all others waited for
 };
 
-struct NodeCost {
-  std::string name;
-  double compute_s = 0.0, messaging_s = 0.0, waiting_s = 0.0, start_s = 0.0;
-};
-
 /// The products of a run, complete or not.
 struct RunContents {
-  std::string directory, status, how, reason, software, digest, start_utc, star_catalogue;
-  std::optional<double> wall_s;
-  int parts = 1;  // in which the run was made
-  std::uint64_t seed = 0;
-  double duration_s = 0.0, tick_s = 0.0;
-  std::vector<ReportSensor> sensors;
-  std::vector<ReportFrame> frames;  // by sensor and number
-  std::vector<ReportTruth> truths;  // of objects that may have light in a frame
+  std::string directory;
+  RunRecord record;  // of a run that was killed as it began it: with its digest alone
+  std::vector<ReportSensor> sensors;  // of the record, and others that have left frames
+  std::vector<ReportFrame> frames;    // by sensor and number
+  std::vector<ReportTruth> truths;    // of objects that may have light in a frame
   std::vector<ReportDetection> detections;
   bool has_truth = false;
   Score score;
@@ -97,8 +85,7 @@ struct RunContents {
   std::vector<Task> cues;
   std::vector<ReportTick> ticks;
   std::map<std::string, double> waited_for_s;  // in which the clock waited for a node
-  std::vector<NodeCost> nodes;
-  std::vector<std::string> files;  // products and logs, paths from the directory
+  std::vector<std::string> files;              // products and logs, paths from the directory
 };
 
 /// Reads what is in a run's directory: the lines of each sensor, also of a run that was

@@ -1,6 +1,6 @@
 #include "core/report/run_report.h"
 
-#include "core/base/digest.h"
+#include "core/base/files/digest.h"
 #include "core/report/compact_bytes.h"
 #include "core/report/page_resources.h"
 #include "core/report/report_json.h"

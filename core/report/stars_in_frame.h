@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/base/pixel.h"
-#include "core/sky/star_map.h"
+#include "core/sky/stars/star_map.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {

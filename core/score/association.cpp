@@ -1,6 +1,6 @@
 #include "core/score/association.h"
 
-#include "core/base/assignment.h"
+#include "core/base/numeric/assignment.h"
 #include "core/score/trail.h"
 
 namespace dmise {

@@ -7,16 +7,16 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/files/text_fields.h"
+#include "core/base/files/text_file.h"
 #include "core/base/formatted.h"
 #include "core/base/nearest_name.h"
 #include "core/base/printable.h"
-#include "core/base/text_fields.h"
-#include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/ingest/any_frame.h"
 #include "core/optics/psf_table.h"
 #include "core/products/frame_report.h"
-#include "core/score/run_files.h"
+#include "core/score/scored_run.h"
 #include "core/score/trail.h"
 #include "core/wcs/wcs.h"
 

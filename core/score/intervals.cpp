@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/chi_square.h"
+#include "core/base/numeric/chi_square.h"
 #include "core/base/units.h"
 #include "core/score/matched_filter.h"
 

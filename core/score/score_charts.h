@@ -1,5 +1,5 @@
 #pragma once
-#include "core/image/chart.h"
+#include "core/image/charts/chart.h"
 #include "core/score/score.h"
 
 namespace dmise {

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "core/base/files/read_progress.h"
 #include "core/base/pixel.h"
 #include "core/base/sim_time.h"
 #include "core/products/detection.h"
 #include "core/products/unknown_facts.h"
-#include "core/score/read_progress.h"
 
 namespace dmise {
 

@@ -1,9 +1,9 @@
+#include "core/base/files/json.h"
+#include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
-#include "core/base/json.h"
 #include "core/base/printable.h"
-#include "core/base/text_fields.h"
 #include "core/base/units.h"
-#include "core/detection/unknown_fields.h"
+#include "core/products/unknown_fields.h"
 #include "core/score/score_text.h"
 
 namespace dmise {

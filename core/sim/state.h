@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/base/rare.h"
+#include "core/base/numeric/rare.h"
 #include "core/base/sim_time.h"
 #include "core/frames/earth_orientation.h"
 #include "core/frames/vec.h"
 #include "core/orbit/attitude_interpolation.h"
-#include "core/orbit/elements.h"
+#include "core/orbit/elements/elements.h"
 #include "core/photometry/diffuse_sphere.h"
 
 // Data exchanged between actors and evaluators, the same in one process and across a network.

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/fold_digest.h"
+#include "core/base/files/fold_digest.h"
 #include "core/base/sim_time.h"
 
 namespace dmise {

@@ -6,7 +6,7 @@
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
@@ -50,11 +50,11 @@ const Spectrum& usual_spectrum() {
     constexpr double oh_scale = 0.6;
     // Herzberg's bands of O2, likewise: U = 22.1 (Patat 2003: 22.3; Benn & Ellison 1998: 22.0).
     constexpr double herzberg_scale = 4.2;
-    // Means over 100 nm: OH to 2.2 um, then thermal emission.
+    // Means over 100 nm, of OH. Thermal emission of the air, from 2.2 um on, is another part.
     static constexpr double infrared[][2] = {{1000, 9.0},  {1100, 10.0}, {1250, 13.0}, {1400, 15.0},
                                              {1500, 40.0}, {1600, 48.0}, {1700, 48.0}, {1800, 25.0},
                                              {1900, 8.0},  {2000, 11.0}, {2100, 9.0},  {2200, 4.0},
-                                             {2300, 6.0},  {2400, 14.0}, {2500, 25.0}};
+                                             {2250, 0.0},  {100000, 0.0}};
     Curve curve{{200 * nm, 300 * nm}, {0.0, herzberg_scale * 0.23}};
     double at_nm = 350;
     for (const double flux : visible) {

@@ -36,11 +36,10 @@ double van_rhijn(double sin_altitude, double layer_height_m);
 /// the light of a layer over the whole sky, as Noll et al. give it.
 double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag);
 
-/// Its colour, 0.2-2.5 um: lines of oxygen, sodium and OH over a continuum. To 0.97 um the night
-/// sky of La Palma (Benn & Ellison 1998, ING technical note 115) every 10 nm, beyond it by Y, J, H
-/// and K of ESO's sky calculator: OH to 2.2 um, then thermal emission of the air (of Paranal).
-/// `brighter`: light without OH over that at 130 sfu; OH, from 0.7 um on, does not follow the Sun
-/// and is divided by it.
+/// Its colour, 0.2-2.25 um, and none to 100 um: lines of oxygen, sodium and OH over a continuum. To
+/// 0.97 um the night sky of La Palma (Benn & Ellison 1998, ING technical note 115) every 10 nm,
+/// beyond it by Y, J, H and K of ESO's sky calculator. `brighter`: light without OH over that at
+/// 130 sfu; OH, from 0.7 um on, does not follow the Sun and is divided by it.
 Spectrum airglow_spectrum(double brighter = 1.0);
 
 }  // namespace dmise

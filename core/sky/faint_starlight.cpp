@@ -5,7 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
-#include "core/sky/star_counts.h"
+#include "core/sky/stars/star_counts.h"
 
 namespace dmise {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
-#include "core/sky/sky_frames.h"
+#include "core/frames/sky_frames.h"
 
 namespace dmise {
 

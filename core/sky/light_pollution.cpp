@@ -8,7 +8,7 @@
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
@@ -67,6 +67,8 @@ Spectrum lamp_spectrum(const LampMix& lamps) {
     for (std::size_t i = 0; i < mix.irradiance.value.size(); ++i)
       mix.irradiance.value[i] += scale * each[lamp].irradiance.value[i];
   }
+  mix.irradiance.add(mix.irradiance.wavelength_m.back() * 1.001, 0.0);
+  mix.irradiance.add(100 * um, 0.0);
   return mix;
 }
 

@@ -41,9 +41,10 @@ struct LightPollution {
 /// there.
 double light_pollution_s10(const LightPollution& pollution, const Vec<Enu>& direction, double k_v);
 
-/// Spectrum of the mix, 0.2-2.5 um: each lamp as a sum of lines with their widths. Low-pressure
-/// sodium: the D lines; high-pressure sodium: D lines reversed and broadened, their neighbours and
-/// 819 nm; LED: blue die and phosphor. Throws `Error` for shares below 0 or all 0.
+/// Spectrum of the mix, 0.2-2.5 um, and none to 100 um: each lamp as a sum of lines with their
+/// widths. Low-pressure sodium: the D lines; high-pressure sodium: D lines reversed and broadened,
+/// their neighbours and 819 nm; LED: blue die and phosphor. Throws `Error` for shares below 0 or
+/// all 0.
 Spectrum lamp_spectrum(const LampMix& lamps);
 
 }  // namespace dmise

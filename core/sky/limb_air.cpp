@@ -6,12 +6,12 @@
 #include <mutex>
 #include <vector>
 
-#include "core/base/table_place.h"
+#include "core/base/numeric/table_place.h"
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
-#include "core/sky/kept_tables.h"
-#include "core/sky/standard_air.h"
-#include "core/sky/sunlit_air.h"
+#include "core/sky/air/kept_tables.h"
+#include "core/sky/air/standard_air.h"
+#include "core/sky/air/sunlit_air.h"
 
 namespace dmise {
 namespace {

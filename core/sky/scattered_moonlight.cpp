@@ -6,7 +6,7 @@
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {

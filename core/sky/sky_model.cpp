@@ -5,8 +5,9 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/airmass.h"
-#include "core/sky/extinction.h"
+#include "core/photometry/planck.h"
+#include "core/sky/air/airmass.h"
+#include "core/sky/air/extinction.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
@@ -24,15 +25,14 @@ std::optional<SkyParts> sky_parts_named(std::string_view preset) {
   const std::optional<double> zenith = zenith_brightness_named(preset);
   if (!zenith) return std::nullopt;
   SkyParts parts;
-  if (preset == "space") {
-    parts.uniform = UniformSky{*zenith};
-    return parts;
-  }
-  parts.airglow = Airglow{};
   parts.zodiacal_light = ZodiacalLight{};
   parts.faint_starlight = FaintStarlight{};
+  if (preset == "space") return parts;
+  parts.airglow = Airglow{};
   parts.scattered_moonlight = ScatteredMoonlight{};
   parts.twilight = Twilight{};
+  parts.thermal_sky = ThermalSky{};
+  parts.daylight = Daylight{};
   if (preset != "dark") {
     const double natural_s10 = s10_of_mag_per_arcsec2(*zenith_brightness_named("dark"));
     parts.light_pollution = LightPollution{};
@@ -69,9 +69,16 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   } else {
     parts_ = acting_sky(parts, {}, {.on_ground = false});
   }
-  if (parts_.twilight)
-    twilight_scale_s10_ = parts_.twilight->factor * twilight_zenith_s10(sun_altitude_rad) /
-                          twilight_pattern(1.0, pi / 2 - sun_altitude_rad, k_v_);
+  if (parts_.daylight) daylight_share_ = daylight_share(sun_altitude_rad);
+  if (daylight_share_ > 0.0) {
+    day_sun_ = scene.apparent_sun.value_or(scene.sun);
+    day_sky_ = kept_day_sky(band, scene.day_air, day_sun_.z);
+  }
+  if (parts_.twilight && daylight_share_ < 1.0) {
+    twilight_zenith_s10_ =
+        (1.0 - daylight_share_) * parts_.twilight->factor * twilight_zenith_s10(sun_altitude_rad);
+    if (twilight_zenith_s10_ > 0.0) twilight_pattern_.emplace(scene.sun);
+  }
   const double sunlit = photons_per_s_m2_sr_of_s10(band);
   photons_of_s10_.fill(sunlit);
   const auto photons_of = [&](SkyPart part, const Spectrum& spectrum, const Band& of) {
@@ -81,7 +88,7 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   const Band above = absorbs ? through(band, gas_transmission(*scene.gases, 1.0)) : band;
   if (absorbs)
     for (const SkyPart part : {SkyPart::zodiacal_light, SkyPart::faint_starlight})
-      photons_of(part, solar_spectrum(), above);
+      photons_of(part, sunlight_spectrum(), above);
   if (parts_.zodiacal_light) zodiacal_redness_ = zodiacal_redness(above);
   if (parts_.airglow)
     photons_of(SkyPart::airglow,
@@ -91,6 +98,7 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   if (parts_.twilight) photons_of(SkyPart::twilight, twilight_spectrum(sun_altitude_rad), above);
   if (parts_.light_pollution)
     photons_of(SkyPart::light_pollution, lamp_spectrum(parts_.light_pollution->lamps), band);
+  if (parts_.thermal_sky && is_thermal(band)) air_radiance_.emplace(band, scene.warm_air);
 }
 
 double SkyModel::above_air_s10(SkyPart part, const Vec<Enu>& direction) const {
@@ -122,9 +130,8 @@ double SkyModel::above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const
              scattered_moonlight_s10(angle_rad(direction, scene_.moon), direction.z, scene_.moon.z,
                                      moon_v_mag_, moonlit_air_);
     case SkyPart::twilight:
-      if (!(twilight_scale_s10_ > 0)) return 0.0;
-      return twilight_scale_s10_ *
-             twilight_pattern(direction.z, angle_rad(direction, scene_.sun), k_v_);
+      return twilight_pattern_ ? twilight_zenith_s10_ * twilight_pattern_->over_zenith(direction)
+                               : 0.0;
     default:
       return 0.0;
   }
@@ -133,7 +140,19 @@ double SkyModel::above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const
   return arrives * above_air_s10(part, direction);
 }
 
+double SkyModel::daylight_s10(const Vec<Enu>& direction) const {
+  if (!day_sky_) return 0.0;
+  const double photons = day_sky_->photons_per_s_m2_sr(
+      {.sin_altitude = direction.z,
+       .azimuth_from_sun_rad = std::atan2(direction.x * day_sun_.y - direction.y * day_sun_.x,
+                                          direction.x * day_sun_.x + direction.y * day_sun_.y),
+       .cos_angle_from_sun = dot(direction, day_sun_)});
+  return daylight_share_ * parts_.daylight->factor * photons /
+         photons_of_s10_[std::size_t(SkyPart::daylight)];
+}
+
 double SkyModel::part_s10(SkyPart part, const Vec<Enu>& direction) const {
+  if (part == SkyPart::daylight) return daylight_s10(direction);
   if (part == SkyPart::uniform)
     return parts_.uniform ? s10_of_mag_per_arcsec2(parts_.uniform->v_mag_per_arcsec2) : 0.0;
   if (part == SkyPart::light_pollution)
@@ -151,9 +170,9 @@ std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction
   const double clouds = cloud_transmission(direction);
   for (std::size_t i = 0; i < sky_part_count; ++i) {
     const auto part = static_cast<SkyPart>(i);
-    s10[i] = part == SkyPart::uniform || part == SkyPart::light_pollution
-                 ? part_s10(part, direction)
-                 : clouds * above_clouds_s10(part, direction);
+    const bool before_clouds =
+        part == SkyPart::uniform || part == SkyPart::light_pollution || part == SkyPart::daylight;
+    s10[i] = before_clouds ? part_s10(part, direction) : clouds * above_clouds_s10(part, direction);
   }
   return s10;
 }
@@ -164,6 +183,8 @@ std::array<double, sky_part_count> SkyModel::photons_of_parts(const Vec<Enu>& di
   double& zodiacal = parts[std::size_t(SkyPart::zodiacal_light)];
   if (zodiacal > 0.0)
     zodiacal *= 1.0 + zodiacal_slope(angle_rad(direction, scene_.sun)) * zodiacal_redness_;
+  if (air_radiance_)
+    parts[std::size_t(SkyPart::thermal_sky)] = air_radiance_->photons_per_s_m2_sr(direction.z);
   return parts;
 }
 

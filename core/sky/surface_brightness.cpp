@@ -37,7 +37,7 @@ std::optional<double> zenith_brightness_named(std::string_view preset) {
   if (preset == "urban") return 18.0;
   if (preset == "suburban") return 20.0;
   if (preset == "dark") return 21.9;
-  if (preset == "space") return 21.0;
+  if (preset == "space") return 22.0;
   return std::nullopt;
 }
 

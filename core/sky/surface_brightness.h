@@ -18,11 +18,11 @@ double s10_of_nanolambert(double nanolambert);
 
 /// Photons/s/m2/sr in `band` of a surface of 1 S10 (V) whose light has the colour of `spectrum`
 /// (any scale). Throws `Error` when the band reaches beyond the spectrum.
-double photons_per_s_m2_sr_of_s10(const Band& band, const Spectrum& spectrum = solar_spectrum());
+double photons_per_s_m2_sr_of_s10(const Band& band, const Spectrum& spectrum = sunlight_spectrum());
 
 /// The whole sky in one figure: V brightness at the zenith [mag/arcsec2] by name: "urban" 18
-/// (Atlanta-like), "suburban" 20, "dark" 21.9 (an observatory), "space" 21.0 (zodiacal light at low
-/// elongation: 516 S10).
+/// (Atlanta-like), "suburban" 20, "dark" 21.9 (an observatory), "space" 22.0 (zodiacal light 90 deg
+/// from the Sun in the ecliptic: 202 S10).
 std::optional<double> zenith_brightness_named(std::string_view preset);
 
 }  // namespace dmise

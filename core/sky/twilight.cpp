@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "core/base/numeric/table_place.h"
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/airmass.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {
@@ -60,13 +61,31 @@ double twilight_zenith_s10(double sun_altitude_rad) {
   return s10_of_mag_per_arcsec2(zenith_mag_per_arcsec2(-sun_altitude_rad / deg));
 }
 
-double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k_v) {
-  const double s = std::clamp(sin_altitude, 0.0, 1.0);
-  const double zenith_distance_deg = std::acos(s) / deg;
-  const double k = std::max(k_v, 0.05);
-  return light_of_magnitude(-zenith_distance_deg / (360.0 * k)) /
-         std::max(angle_from_sun_rad / deg, 1.0) *
-         (1.0 - light_of_magnitude(k * scattering_airmass(s)));
+TwilightPattern::TwilightPattern(const Vec<Enu>& sun) {
+#include "core/sky/twilight_pattern.inc"
+  const double depression_deg = -std::asin(std::clamp(sun.z, -1.0, 1.0)) / deg;
+  const TablePlace at = table_place(depression_deg / step_deg, std::size(nodes));
+  for (std::size_t i = 0; i < powers_of_x; ++i)
+    for (std::size_t j = 0; j < powers_of_v; ++j)
+      coefficients_[i][j] = std::lerp(nodes[at.node][i][j], nodes[at.node + 1][i][j], at.part);
+  const double horizontal = std::hypot(sun.x, sun.y);
+  if (!(horizontal > 0.0)) return;
+  sun_east_ = sun.x / horizontal;
+  sun_north_ = sun.y / horizontal;
+}
+
+double TwilightPattern::over_zenith(const Vec<Enu>& direction) const {
+  constexpr double near_horizon = 0.3;
+  const double s = std::clamp(direction.z, 0.0, 1.0);
+  const double v = near_horizon * (1.0 - s) / (s + near_horizon);
+  const double x = direction.x * sun_east_ + direction.y * sun_north_;
+  double sum = 0.0;
+  for (std::size_t i = powers_of_x; i-- > 0;) {
+    double of_v = 0.0;
+    for (std::size_t j = powers_of_v; j-- > 0;) of_v = of_v * v + coefficients_[i][j];
+    sum = sum * x + of_v;
+  }
+  return std::exp(sum);
 }
 
 Spectrum twilight_spectrum(double sun_altitude_rad) {
@@ -100,7 +119,7 @@ Spectrum twilight_spectrum(double sun_altitude_rad) {
     add(band.wavelength_nm, factor);
   }
   add(1000, factors.value.back());
-  return times(solar_spectrum(), [&](double x_m) { return factors.at_or_end(x_m); });
+  return times(sunlight_spectrum(), [&](double x_m) { return factors.at_or_end(x_m); });
 }
 
 }  // namespace dmise

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/monotone_cubic.h"
-#include "core/base/table_place.h"
+#include "core/base/numeric/monotone_cubic.h"
+#include "core/base/numeric/table_place.h"
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
 #include "core/photometry/spectrum.h"
@@ -142,8 +142,9 @@ double zodiacal_redness(const Band& band) {
     const double decades = std::log10(std::clamp(wavelength_m, 220 * nm, 2500 * nm) / (500 * nm));
     return decades < 0.0 ? 1.5 * decades : decades;
   };
-  const Spectrum reddened = times(solar_spectrum(), [&](double x_m) { return 1.0 + redness(x_m); });
-  return photon_rate_per_m2(reddened, band) / photon_rate_per_m2(solar_spectrum(), band) - 1.0;
+  const Spectrum reddened =
+      times(sunlight_spectrum(), [&](double x_m) { return 1.0 + redness(x_m); });
+  return photon_rate_per_m2(reddened, band) / photon_rate_per_m2(sunlight_spectrum(), band) - 1.0;
 }
 
 }  // namespace dmise

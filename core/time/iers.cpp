@@ -3,9 +3,9 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/base/table_place.h"
-#include "core/base/text_fields.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_fields.h"
+#include "core/base/files/text_file.h"
+#include "core/base/numeric/table_place.h"
 #include "core/base/units.h"
 #include "core/time/leap_seconds.h"
 

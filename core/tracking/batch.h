@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "core/forces/forces.h"
 #include "core/tracking/angle_observation.h"
-#include "core/tracking/forces.h"
 #include "core/tracking/orbit_state.h"
 #include "core/tracking/outcome.h"
 #include "core/tracking/propagate.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/tracking/acceleration.h"
+#include "core/forces/acceleration.h"
 #include "core/tracking/propagate.h"
 
 // Dormand-Prince 5(4) for any type of number (Dormand & Prince 1980, J. Comp. Appl. Math. 6, 19).

@@ -10,7 +10,7 @@
 
 #include "core/base/units.h"
 #include "core/frames/earth_orientation.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/tracking/propagate.h"
 
 namespace dmise {

@@ -1,7 +1,7 @@
 #pragma once
-#include "core/orbit/elements.h"
+#include "core/forces/forces.h"
+#include "core/orbit/elements/elements.h"
 #include "core/time/clock.h"
-#include "core/tracking/forces.h"
 #include "core/tracking/orbit_state.h"
 #include "core/tracking/outcome.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/forces/manoeuvre.h"
 #include "core/orbit/two_body.h"
 
 namespace dmise {
@@ -29,6 +30,14 @@ bool is_sane(const OrbitState& state) {
 bool is_sane(const OrbitEstimate& estimate) {
   return is_sane(estimate.state) && estimate.covariance.allFinite() &&
          (estimate.covariance.diagonal().array() >= 0).all();
+}
+
+Eigen::Matrix3d orbit_axes(const OrbitState& s) {
+  const MotionState<Gcrs> state{s.position_m, s.velocity_m_per_s};
+  Eigen::Matrix3d axes;
+  axes << eigen_of(gcrs_from_rtn(state, {1, 0, 0})), eigen_of(gcrs_from_rtn(state, {0, 1, 0})),
+      eigen_of(gcrs_from_rtn(state, {0, 0, 1}));
+  return axes;
 }
 
 namespace {

@@ -41,6 +41,9 @@ inline Vec<Gcrs> gcrs_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()
 bool is_sane(const OrbitState& state);
 bool is_sane(const OrbitEstimate& estimate);
 
+/// Columns: the radial, transverse and normal axes of its orbit.
+Eigen::Matrix3d orbit_axes(const OrbitState& state);
+
 /// Smallest and largest distance from the Earth's centre on the osculating conic [m]; the apogee
 /// of an orbit that does not return is infinite.
 double perigee_m(const OrbitState& state);

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "core/tracking/forces.h"
+#include "core/forces/forces.h"
 #include "core/tracking/orbit_state.h"
 #include "core/tracking/outcome.h"
 

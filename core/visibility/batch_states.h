@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 
 namespace dmise {
 

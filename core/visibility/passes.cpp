@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/sky/air_exposure.h"
+#include "core/sky/air/air_exposure.h"
 #include "core/visibility/batch_states.h"
 
 namespace dmise {

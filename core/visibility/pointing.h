@@ -32,6 +32,12 @@ Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, do
 /// Geocentric state of an observer at one instant.
 using ObserverState = MotionState<Gcrs>;
 
+/// State of an observer who stands still on the Earth at `place_m`.
+inline ObserverState standing_at(const Vec<Itrs>& place_m, const EarthOrientation& earth,
+                                 SimTime t) {
+  return {earth.itrs_from_gcrs(t).inverse() * place_m, earth.velocity_of_fixed_point(place_m, t)};
+}
+
 /// Inputs of a camera's attitude at one instant.
 struct PointingScene {
   SimTime time;

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/config/pointing_config.h"
-#include "core/sky/earth_limb.h"
-#include "core/sky/moon_disc.h"
-#include "core/sky/sun_disc.h"
-#include "core/sky/sun_moon.h"
+#include "core/config/sensors/pointing_config.h"
+#include "core/sky/bodies/earth_limb.h"
+#include "core/sky/bodies/moon_disc.h"
+#include "core/sky/bodies/sun_disc.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/visibility/target_direction.h"
 
 namespace dmise {
@@ -102,7 +102,7 @@ CameraMoment SensorTrack::camera_at(SimTime t) const {
       .time = t, .itrs_from_gcrs = itrs_from_gcrs, .site = site_ ? &*site_ : nullptr};
   now.gcrs_from_teme = gcrs_from_teme;
   if (site_) {
-    scene.observer = {gcrs_from_teme * now.apex_m, earth.velocity_of_fixed_point(site_m_, t)};
+    scene.observer = standing_at(site_m_, earth, t);
   } else {
     const auto host = state_of(*platform_, now, gcrs_from_teme);
     now.there = host.has_value();

@@ -3,9 +3,9 @@
 
 #include "core/config/scenario.h"
 #include "core/optics/exclusion.h"
-#include "core/orbit/sgp4_batch.h"
-#include "core/sky/occultation.h"
-#include "core/sky/refraction.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
+#include "core/sky/air/refraction.h"
+#include "core/sky/bodies/occultation.h"
 #include "core/visibility/pointing.h"
 #include "core/visibility/sky_hours.h"
 

@@ -11,7 +11,7 @@ namespace dmise {
 class Sight {
  public:
   /// Closer objects are the sensor's own platform, under any number: not seen.
-  static constexpr double nearest_m = 1.0;
+  static constexpr double nearest_m = 0.1;
 
   explicit Sight(const SensorConfig& sensor);
 

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "core/frames/oblate_earth.h"
-#include "core/sky/shadow.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/bodies/shadow.h"
+#include "core/sky/places/sun_moon.h"
 #include "core/time/clock.h"
 
 namespace dmise {

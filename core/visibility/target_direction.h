@@ -1,5 +1,5 @@
 #pragma once
-#include "core/sky/apparent.h"
+#include "core/sky/places/apparent.h"
 #include "core/visibility/pointing.h"
 
 namespace dmise {

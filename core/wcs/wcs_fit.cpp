@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/least_squares.h"
+#include "core/base/numeric/least_squares.h"
 #include "core/base/units.h"
 #include "core/optics/projection.h"
 #include "core/wcs/wcs.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/pixel.h"
 #include "core/optics/camera.h"
-#include "core/sky/refraction.h"
+#include "core/sky/air/refraction.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {

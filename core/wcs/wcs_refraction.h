@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "core/base/pixel.h"
-#include "core/sky/refraction.h"
+#include "core/sky/air/refraction.h"
 #include "core/wcs/wcs.h"
 
 // Refraction in a world coordinate system. In FITS it is a distortion by table lookup (CPDISj =

@@ -115,7 +115,7 @@ PICTURES = {
     "box-wing.png": drawn, "starlink-like.png": drawn, "light-curve.png": drawn, "inspector.png": drawn,
     "demo.png": first_frame, "figure5.svg": figure5, "survey.svg": survey,
     "report.png": report, "report-frame.jpg": report, "live-view.png": live_view, "live-view-objects.png": live_view,
-    **{f"scenario-{name}.png": by("docs/gallery/scenarios.py", "DMISE") for name in ("close-up", "cooperate", "dataset", "three-sites")},
+    **{f"scenario-{name}.png": by("docs/gallery/scenarios.py", "DMISE") for name in ("breakup", "close-up", "cooperate", "dataset", "proximity", "three-sites")},
 }
 
 

@@ -25,7 +25,8 @@ SHARED = {"accuracy-all-sky": "gallery/accuracy-all-sky.svg", "accuracy-resolved
           "paper/figure6": "paper/figure6.png", "paper/figure8": "paper/figure8.png"}
 # Drawn by this script: frame of which sensor, how long the run takes of the scenario's time, and what of the frame is shown.
 DRAWN = {"close-up": ("near-eye", None, None), "three-sites": ("atlanta", 15, (512, 512)), "cooperate": (None, 30, (360, 480)),
-         "dataset": ("watcher", None, None)}
+         "dataset": ("watcher", None, None), "breakup": ("raven", 50, (700, 700)),
+         "proximity": ("servicer-eye", None, None)}
 
 
 def names():
@@ -43,7 +44,7 @@ def words(name):
         if not line.startswith("#   "):  # a command
             lines.append(line[1:].strip())
     command = "dataset" if name == "dataset" else "survey" if name.startswith("survey") else \
-        "visible" if name == "figure5" else "run"
+        "visible" if name == "figure5" else "observatory" if name == "observatory" else "run"
     description = re.sub(r"(\./)?(dmise \w+ launch/\S+?( --?\S+?( [^-\s.]\S*?)?)*)(?=[.:,]?(\s|$))", r"`\2`", " ".join(lines))
     description = re.sub(r"docs/(\S+?\.md)", r"[\1](\1)", description)
     return description, f"dmise {command} launch/scenarios/{name}.yaml" + (" --seeds 1..10" if name == "dataset" else "")

@@ -14,7 +14,7 @@ TABLE_1 = [
     ("Camera", "`sensors: [{site \\| platform, camera, pointing}]`; `pointing: {body: {boresight, up}}` is the body-mounted one",
      "a free camera is aboard an object with a motion of its own: eye `motion: {enu: {position_m, velocity_m_per_s \\| track}}`, look and up "
      "`pointing: {enu: {look \\| look_at_m, up}}`"),
-    ("Sun", "`core/sky/sun_moon`", "0.01 deg of the Almanac's formula"),
+    ("Sun", "`core/sky/places/sun_moon`", "0.01 deg of the Almanac's formula"),
 ]
 
 

@@ -21,8 +21,9 @@ LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
 # Chapters of the site; what no chapter names stands in the last one.
 CHAPTERS = (
     ("Getting started", ("README.md", "docs/install.md", "docs/tutorial.md", "docs/gallery.md")),
-    ("How to", ("docs/howto/design-a-sensor.md", "docs/howto/write-a-tracker.md", "docs/howto/plug-in-a-model.md",
-                "docs/howto/worked-examples.md", "docs/howto/make-a-data-set.md", "docs/howto/operate-a-network.md")),
+    ("How to", ("docs/howto/design-a-sensor.md", "docs/howto/calibrate-a-camera.md", "docs/howto/manoeuvre-objects.md", "docs/howto/write-a-tracker.md", "docs/howto/plug-in-a-model.md",
+                "docs/howto/worked-examples.md", "docs/howto/make-a-data-set.md", "docs/howto/operate-a-network.md",
+                "docs/howto/test-your-observatory-software.md")),
     ("Reference", ("docs/reference/scenario.md", "docs/reference/camera.md", "docs/reference/site.md",
                    "docs/reference/materials.md", "docs/wire.md", "docs/python.md", "docs/clients.md", "docs/exchange.md", "docs/detection.md",
                    "docs/datasets.md", "docs/operations.md", "docs/stack.md")),

@@ -4,11 +4,12 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/units.h"
-#include "core/config/object_names.h"
+#include "core/config/fusion_config.h"
+#include "core/config/objects/object_names.h"
 #include "core/products/frame_report.h"
-#include "core/products/task_json.h"
-#include "core/products/track_json.h"
+#include "core/products/product_json.h"
 #include "core/time/iso8601.h"
 #include "nodes/fusion/filter_tracker.h"
 #include "nodes/fusion/own_tracker.h"
@@ -91,12 +92,22 @@ std::vector<std::string> FusionEvaluator::consumes() const {
 
 void FusionEvaluator::start_with(const ObjectRoster& roster) {
   ObjectRoster known;
-  for (std::size_t i = 0; i < roster.elements.size(); ++i) {
-    if (std::ranges::any_of(scenario_.fusion->not_in_catalogue,
-                            [&](const auto& name) { return is_called(roster.objects[i], name); }))
-      continue;
-    known.objects.push_back(roster.objects[i]);
-    known.elements.push_back(roster.elements[i]);
+  const auto is_unknown = [&](const auto& object) {
+    return std::ranges::any_of(scenario_.fusion->not_in_catalogue,
+                               [&](const auto& name) { return is_called(object, name); });
+  };
+  if (!scenario_.fusion->catalogue_path.empty()) {
+    for (const MeanElements& e : believed_elements(*scenario_.fusion, clock_.utc({0}))) {
+      if (is_unknown(e)) continue;
+      known.objects.push_back({.catalogue_number = e.catalogue_number, .name = printable(e.name)});
+      known.elements.push_back(e);
+    }
+  } else {
+    for (std::size_t i = 0; i < roster.elements.size(); ++i) {
+      if (is_unknown(roster.objects[i])) continue;
+      known.objects.push_back(roster.objects[i]);
+      known.elements.push_back(roster.elements[i]);
+    }
   }
   if (scenario_.fusion->node.empty()) {
     tracker_ = std::make_unique<FilterTracker>(scenario_, known, clock_);

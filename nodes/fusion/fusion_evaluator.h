@@ -48,8 +48,8 @@ class FusionEvaluator : public Evaluator {
   std::uint64_t progress() const override { return progress_; }
 
  private:
-  /// Makes the tracker, with the roster's objects that have elements but for those of
-  /// `not_in_catalogue`.
+  /// Makes the tracker, with the roster's objects that have elements, or those of `catalogue`, but
+  /// for those of `not_in_catalogue`.
   void start_with(const ObjectRoster& roster);
   struct Found {
     TrackSet tracks;

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 
 namespace dmise {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "core/base/paths.h"
+#include "core/base/files/paths.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "nodes/fusion/fusion_evaluator.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/config/scenario.h"
+#include "core/forces/forces.h"
 #include "core/fusion/live_track.h"
+#include "core/propagation/environment_source.h"
 #include "core/time/clock.h"
-#include "core/tracking/forces.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/fusion/tracker.h"
 #include "nodes/own/own_node_run.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/image/charts/picture.h"
 #include "core/image/fits_file.h"
-#include "core/image/picture.h"
 #include "core/pictures/picture_file.h"
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/process/limited_log.h"

@@ -1,6 +1,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "nodes/gateway/connection.h"
+#include "nodes/web/http_answer.h"
 
 namespace dmise {
 namespace {
@@ -25,9 +26,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   HttpConnection(Hub& hub, tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
     error_code ignored;
     address_ = stream_.socket().remote_endpoint(ignored).address().to_string();
-    hub_.add(this);
+    hub_.connections.add(this);
   }
-  ~HttpConnection() override { hub_.remove(this); }
+  ~HttpConnection() override { hub_.connections.remove(this); }
 
   std::string stranger() const override { return has_access_ ? "" : address_; }
   void close() override { stream_.close(); }
@@ -44,8 +45,6 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
  private:
-  using Answer = http::response<http::string_body>;
-
   void take() {
     const auto& request = parser_->get();
     const std::string_view host = view_of(request[http::field::host]);
@@ -82,7 +81,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   /// Moves the token from the address, which browsers show and store, to a cookie.
   void keep_token(std::string_view target, std::string_view host, const std::string& token) {
-    Answer answer = begin(http::status::see_other);
+    HttpAnswer answer = begin(http::status::see_other);
     answer.set(http::field::location, without_token(target));
     answer.set(http::field::set_cookie,
                cookie_name(host) + "=" + token + "; Path=/; HttpOnly; SameSite=Strict");
@@ -105,7 +104,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void send_preview(const SharedPreview& png) {
     if (!png) return refuse(http::status::not_found, "no preview of this frame");
-    Answer answer = begin(http::status::ok);
+    HttpAnswer answer = begin(http::status::ok);
     answer.set(http::field::content_type, "image/png");
     answer.set(http::field::cache_control, "private, max-age=3600");
     answer.body() = *png;
@@ -114,7 +113,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void send_file(const std::string& path) {
     if (hub_.content.files.empty() && path == "index.html") {
-      Answer answer = begin(http::status::ok);
+      HttpAnswer answer = begin(http::status::ok);
       answer.set(http::field::content_type, "text/html; charset=utf-8");
       answer.set(http::field::cache_control, "no-store");
       answer.body() = no_dashboard;
@@ -127,7 +126,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
         takes_gzip(view_of(request[http::field::accept_encoding])) && !file->gzipped().empty();
     const std::string& etag = gzip ? file->gzipped_etag : file->etag;
     const bool same = view_of(request[http::field::if_none_match]) == etag;
-    Answer answer = begin(same ? http::status::not_modified : http::status::ok);
+    HttpAnswer answer = begin(same ? http::status::not_modified : http::status::ok);
     answer.set(http::field::content_type, file->type);
     answer.set(http::field::etag, etag);
     answer.set(http::field::cache_control, "no-cache");  // ask each time whether it changed
@@ -138,15 +137,15 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void refuse(http::status status, const char* reason) {
-    Answer answer = begin(status);
+    HttpAnswer answer = begin(status);
     answer.set(http::field::content_type, "text/plain; charset=utf-8");
     answer.body() = std::string(reason) + "\n";
     answer.keep_alive(false);
     send(std::move(answer));
   }
 
-  Answer begin(http::status status) {
-    Answer answer{status, 11};
+  HttpAnswer begin(http::status status) {
+    HttpAnswer answer{status, 11};
     answer.keep_alive(parser_->get().keep_alive());
     answer.set("Content-Security-Policy", content_policy);
     answer.set("X-Content-Type-Options", "nosniff");
@@ -156,34 +155,18 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     return answer;
   }
 
-  void send(Answer answer) {
+  void send(HttpAnswer answer) {
     answer.prepare_payload();
     if (parser_->get().method() == http::verb::head) answer.body().clear();
-    answer_ = std::move(answer);
-    rest_.emplace(answer_);
-    write();
-  }
-
-  /// Sends the rest of the answer. A client has the time for each piece of it, not for the whole.
-  void write() {
-    stream_.expires_after(milliseconds_of(hub_.options.request_within_s));
-    http::async_write_some(stream_, *rest_,
-                           [self = shared_from_this()](error_code error, std::size_t) {
-                             if (error) return;
-                             if (!self->rest_->is_done()) return self->write();
-                             if (self->answer_.keep_alive()) return self->read();
-                             error_code ignored;
-                             self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-                           });
+    sender_.send(std::move(answer), [self = shared_from_this()] { self->read(); });
   }
 
   Hub& hub_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{2 * max_head_bytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  Answer answer_;
-  std::optional<http::response_serializer<http::string_body>> rest_;  // of the answer, to send
-  std::string address_;                                               // of the client
+  AnswerSender sender_{stream_, hub_.options.request_within_s};
+  std::string address_;  // of the client
   bool has_access_ = false;
 };
 

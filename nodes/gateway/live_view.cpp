@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs.h"
 #include "nodes/runtime/process/monotonic_clock.h"
@@ -298,7 +298,7 @@ std::string LiveView::tracks_json() const {
     const auto itrs_from_gcrs = earth_->itrs_from_gcrs(track.time);
     // The largest axis is at most the root of the trace.
     const double variance = track.covariance[0] + track.covariance[2] + track.covariance[5];
-    json.begin_object().field("id", id).field("status", track_status_name(track.status));
+    json.begin_object().field("id", id).field("status", name_of(track.status));
     json.field("time_s", track.time.seconds()).field("last_seen_s", track.last_seen.seconds());
     json.field("number", track.catalogue_number).field("name", track.name);
     json.field("detections", track.detections).field("existence", track.existence);

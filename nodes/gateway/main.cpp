@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 #include "nodes/gateway/frame_previews.h"
 #include "nodes/gateway/run_observer.h"
 #include "nodes/gateway/web_server.h"

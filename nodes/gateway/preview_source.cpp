@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 
 namespace dmise {
 

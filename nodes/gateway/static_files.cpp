@@ -7,8 +7,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/files/digest.h"
 
 namespace dmise {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <boost/beast/websocket.hpp>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "nodes/gateway/connection.h"
 
 namespace dmise {
@@ -19,9 +19,9 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(Hub& hub, beast::tcp_stream stream, Access access)
       : hub_(hub), socket_(std::move(stream)), access_(access) {
-    hub_.add(this);
+    hub_.connections.add(this);
   }
-  ~Viewer() override { hub_.remove(this); }
+  ~Viewer() override { hub_.connections.remove(this); }
 
   void accept(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();

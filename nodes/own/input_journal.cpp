@@ -6,8 +6,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/base/crc32c.h"
 #include "core/base/error.h"
+#include "core/base/files/crc32c.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/config/scenario.h"
+#include "core/propagation/environment_source.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/own/input_journal.h"
 #include "nodes/own/own_node_run.h"
 

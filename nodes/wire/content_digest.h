@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/base/crc32c.h"
-#include "core/base/fold_digest.h"
+#include "core/base/files/crc32c.h"
+#include "core/base/files/fold_digest.h"
 #include "nodes/wire/envelope.h"
 
 namespace dmise {

@@ -2,7 +2,7 @@
 
 #include <google/protobuf/stubs/logging.h>
 
-#include "core/base/crc32c.h"
+#include "core/base/files/crc32c.h"
 #include "dmise/v1/node.pb.h"
 
 namespace dmise {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <type_traits>
 
 #include "core/base/units.h"
 #include "core/frames/vec.h"
@@ -29,12 +28,6 @@ void covariance(const std::array<double, 21>& c, const char* field);
 /// `limit`: in bytes.
 void utf8(const std::string& text, std::size_t limit, const char* field);
 void name_text(const std::string& text, const char* field);
-
-/// Checks numbers of a table that also has texts and flags.
-template <class T>
-void finite_number(const T& value, const char* field) {
-  if constexpr (std::is_same_v<T, double>) finite(value, field);
-}
 
 template <class F>
 void vector_within(const Vec<F>& v, double limit, const char* field) {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 
 #include "core/base/units.h"
-#include "core/products/detection_fields.h"
 #include "core/products/frame_report.h"
 #include "nodes/wire/codecs.h"
 #include "nodes/wire/field_rules.h"
@@ -167,6 +167,54 @@ void check(const FrameReport& report) {
   not_negative(report.psf_fwhm_px, "psf_fwhm_px");
 }
 
+/// Refuses a number of a product that is not finite.
+struct FiniteFields {
+  template <class T>
+  void operator()(const char* name, const T& member, const char* = nullptr, double = 1.0) {
+    if constexpr (std::is_same_v<T, double>) finite(member, name);
+    if constexpr (std::is_same_v<T, std::optional<double>>) finite(member.value_or(0.0), name);
+  }
+  void pair(const char* x_name, double x, const char* y_name, double y, const char*) {
+    finite(x, x_name);
+    finite(y, y_name);
+  }
+  void pair_or_null(bool, const char* x_name, double x, const char* y_name, double y,
+                    const char* key) {
+    pair(x_name, x, y_name, y, key);
+  }
+  void constant(const char*, const char*) {}
+  void absent_unless(bool, const char* name, const auto& member, const char* = nullptr) {
+    (*this)(name, member);
+  }
+};
+
+void check(const LightPeriod& p) {
+  for (const auto& [value, field] :
+       {std::pair(p.period_px, "light_curve.period.period_px"),
+        std::pair(p.period_sigma_px, "light_curve.period.period_sigma_px"),
+        std::pair(p.period_s, "light_curve.period.period_s"),
+        std::pair(p.period_sigma_s, "light_curve.period.period_sigma_s"),
+        std::pair(p.amplitude, "light_curve.period.amplitude"),
+        std::pair(p.amplitude_sigma, "light_curve.period.amplitude_sigma")})
+    not_negative(value, field);
+  in_range(p.false_alarm, 0, 1, "light_curve.period.false_alarm");
+}
+
+void check(const LightCurve& light) {
+  not_negative(light.bin_px, "light_curve.bin_px");
+  for (const auto& [list, field] : {std::pair(&light.along_px, "light_curve.along_px"),
+                                    std::pair(&light.time_s, "light_curve.time_s"),
+                                    std::pair(&light.light_e, "light_curve.light_e"),
+                                    std::pair(&light.sigma_e, "light_curve.sigma_e"),
+                                    std::pair(&light.correlation, "light_curve.correlation")}) {
+    if (list->size() != light.along_px.size()) refuse(field, "must be as long as along_px");
+    for (const double value : *list) finite(value, field);
+  }
+  for (const double sigma : light.sigma_e) not_negative(sigma, "light_curve.sigma_e");
+  for (const double c : light.correlation) in_range(c, -1, 1, "light_curve.correlation");
+  if (light.period) check(*light.period);
+}
+
 void check(const Detection& d) {
   name_text(d.id, "id");
   name_text(d.sensor, "sensor");
@@ -193,16 +241,9 @@ void check(const Detection& d) {
         std::tuple(&d.range_rate_m_per_s, &d.range_rate_sigma_m_per_s, "range_rate_sigma_m_per_s")})
     if (value->has_value() != sigma->has_value() || !(sigma->value_or(1.0) > 0.0))
       refuse(field, "must be > 0, where there is what it is of");
-#define DMISE_NONE(...)
-#define DMISE_VALUE(field, ...) finite_number(d.field, #field);
-#define DMISE_PAIR(x, y, key) finite(d.x, #x), finite(d.y, #y);
-#define DMISE_MEASURED(field, key) finite(d.field.value_or(0.0), #field);
-  DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_PAIR,
-                         DMISE_NONE, DMISE_NONE, DMISE_MEASURED)
-#undef DMISE_NONE
-#undef DMISE_VALUE
-#undef DMISE_PAIR
-#undef DMISE_MEASURED
+  if (d.light_curve) check(*d.light_curve);
+  FiniteFields finite_fields;
+  visit_fields(finite_fields, d);
 }
 
 void check(const DetectionSet& set) {
@@ -232,9 +273,9 @@ void check(const TruthSet& set) {
     in_range(t.phase_angle_rad, 0, pi * (1 + 1e-12), "phase_angle_rad");
     in_range(t.sunlit, 0, 1, "sunlit");
     not_negative(t.rendered_signal_e, "rendered_signal_e");
-    for (const double value : {t.true_magnitude, t.rendered_x_px, t.rendered_y_px, t.start_x_px,
-                               t.start_y_px, t.middle_x_px, t.middle_y_px, t.end_x_px, t.end_y_px})
-      finite(value, "truths");
+    not_negative(t.defocus_disc_px, "defocus_disc_px");
+    FiniteFields finite_fields;
+    visit_fields(finite_fields, t);
     if (const auto& q = t.camera_from_gcrs)
       in_range(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z, 1 - 1e-6, 1 + 1e-6,
                "camera_from_gcrs");

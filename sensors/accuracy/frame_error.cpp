@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detector/expected_noise.h"
-#include "core/detector/expected_signal.h"
+#include "core/detector/exposure/expected_noise.h"
+#include "core/detector/exposure/expected_signal.h"
 #include "core/effects/plan_facts.h"
 #include "core/optics/psf_plan.h"
 #include "sensors/accuracy/source_capsule.h"

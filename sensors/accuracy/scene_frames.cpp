@@ -4,9 +4,9 @@
 
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
-#include "nodes/environment/environment_actor.h"
-#include "orbit-node/orbit_actor.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "orbit-node/load_objects.h"
+#include "sensors/frame/make_sensor.h"
+#include "sensors/objects/world_source.h"
 
 namespace dmise {
 namespace {
@@ -20,24 +20,16 @@ FrameTimes times_of(const Scenario& scenario, const std::string& sensor, std::ui
   return frame_times(config, frame);
 }
 
-/// The world around all exposures from the first that matters for `frame` on.
-World world_around(const Scenario& scenario, const SensorConfig& sensor, const FrameTimes& times,
-                   Threads& threads) {
-  World world(scenario.interpolation, scenario.last_tick());
+/// The world of the exposure; of all before it, too, where the detector keeps charge in traps.
+World world_of(const Scenario& scenario, const SensorConfig& sensor, const FrameTimes& times,
+               Threads& threads) {
   const Clock clock = make_clock(scenario);
-  OrbitActor orbit(scenario, clock, threads);
-  EnvironmentActor environment(scenario, clock);
-  const ExposureSpan span = exposure_span(sensor, times);
-  const bool traps = sensor.camera.detector.persistence_fraction > 0.0;
-  constexpr Tick knots = 3;  // that the highest order of interpolation takes beyond
-  const Tick last = std::min(scenario.last_tick(), span.end.ns / scenario.tick.ns + 1 + knots);
-  for (Tick tick = 0; tick <= last; ++tick) {
-    for (const auto& message : environment.step(tick, {})) world.add(message.state);
-    for (const auto& message : orbit.step(tick, {})) world.add(message.state);
-    if (!traps)
-      world.forget_before(std::min(span.start, scenario.time_of(std::max<Tick>(0, tick - knots))));
-  }
-  return world;
+  const ObjectPopulation population = load_objects(scenario, clock);
+  const StateSource states(population, clock, threads);
+  const WorldSource worlds(scenario, sensor, clock);
+  return sensor.camera.detector.persistence_fraction > 0.0
+             ? worlds.until(times, population, states)
+             : worlds.around(times, population, states);
 }
 
 }  // namespace
@@ -48,7 +40,7 @@ SceneFrames::SceneFrames(const Scenario& scenario, const std::string& sensor, st
       name_(sensor),
       times_(times_of(scenario_, name_, frame)),
       threads_(threads),
-      world_(world_around(scenario_, this->sensor(), times_, threads)),
+      world_(world_of(scenario_, this->sensor(), times_, threads)),
       stars_(load_stars(scenario_)) {}
 
 Exposure SceneFrames::exposure() const { return exposure_of(sensor(), times_, scenario_.seed); }

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "sensors/pipeline/frame_pipeline.h"
+#include "sensors/frame/frame_pipeline.h"
 
 namespace dmise {
 

@@ -9,12 +9,12 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/quantile.h"
-#include "core/config/effect_list.h"
+#include "core/base/numeric/quantile.h"
+#include "core/config/sensors/effect_list.h"
 #include "core/effects/frame_effects.h"
 #include "core/effects/plan_facts.h"
-#include "sensors/pipeline/exposure_planner.h"
-#include "sensors/pipeline/objects_in_field.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
 namespace {
@@ -78,7 +78,7 @@ StatedErrors stated_errors(const SceneFrames& scene, const SensorConfig& sensor)
   if (sensor.effects.has(SpaceObjects::facts)) objects = objects_in_field(view, &shapes);
   SceneFacts facts = scene_facts(sensor);
   facts.stars = scene.stars() != nullptr;
-  facts.shapes = !shapes.empty();
+  tell_shapes(facts, &shapes);
   facts.shutter_closed = view.shutter_closed();
   return {plannable_effects(sensor, facts), planner.facts(view, objects)};
 }

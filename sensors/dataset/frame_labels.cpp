@@ -3,10 +3,10 @@
 #include <array>
 #include <charconv>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/base/units.h"
 #include "core/base/version.h"
-#include "core/detection/detection_json.h"
+#include "core/products/product_json.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {

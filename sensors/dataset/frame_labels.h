@@ -5,7 +5,7 @@
 #include "core/config/scenario_draws.h"
 #include "core/dataset/object_mask.h"
 #include "core/time/clock.h"
-#include "sensors/pipeline/frame_pipeline.h"
+#include "sensors/frame/frame_pipeline.h"
 
 namespace dmise {
 

@@ -10,8 +10,8 @@
 #include "core/time/iso8601.h"
 #include "orbit-node/load_objects.h"
 #include "sensors/dataset/frame_labels.h"
+#include "sensors/frame/make_sensor.h"
 #include "sensors/frames/make_frames.h"
-#include "sensors/pipeline/make_sensor.h"
 
 namespace dmise {
 namespace {
@@ -83,6 +83,9 @@ std::string names_in(const Scenario& scenario) {
   add(scenario.earth_orientation_path);
   for (const ObjectSource& source : scenario.objects) {
     add(source.path);
+    if (source.walker) add(source.named + " of " + std::to_string(source.walker->satellites()));
+    if (source.breakup)  // what there is depends on the seed
+      add(source.named + " by " + std::to_string(source.breakup->seed.value_or(scenario.seed)));
     add(source.facts_path);
     for (const auto& name : source.only) add(name);
   }
@@ -109,8 +112,8 @@ bool has_spans(const Scenario& scenario) {
 
 void SampleMaker::prepare(const Scenario& scenario) {
   refuse_own_nodes(scenario.own_nodes, "dmise dataset");
-  if (!stars_.contains(scenario.star_catalogue_path))
-    stars_[scenario.star_catalogue_path] = load_stars(scenario);
+  auto& stars = stars_[{scenario.star_catalogue_path, scenario.star_variables_path}];
+  if (!stars) stars = load_stars(scenario);
   if (checked_.insert(names_in(scenario)).second) {
     check_sensors(scenario, load_objects(scenario, make_clock(scenario)).roster);
   } else if (has_spans(scenario)) {
@@ -143,8 +146,8 @@ void SampleMaker::make(const DrawnScenario& sample, const FrameTaker& take) {
         {sensor.name, set_up, [frames](FrameProducts& frame) { frames->finish(frame); }});
   }
   Threads one(1);
-  make_frames(scenario, {load_objects(scenario, clock), stars_.at(scenario.star_catalogue_path)},
-              digest_, taps, one);
+  const auto& stars = stars_.at({scenario.star_catalogue_path, scenario.star_variables_path});
+  make_frames(scenario, {load_objects(scenario, clock), stars}, digest_, taps, one);
 }
 
 std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/config/scenario_draws.h"
-#include "core/sky/star_map.h"
+#include "core/sky/stars/star_map.h"
 #include "sensors/dataset/frame_labels.h"
 
 namespace dmise {
@@ -44,8 +44,9 @@ class SampleMaker {
 
  private:
   std::string digest_;
-  std::map<std::string, std::shared_ptr<const StarMap>> stars_;  // by path
-  std::set<std::string> checked_;                                // names of objects
+  // By the paths of the catalogue and of its variable stars.
+  std::map<std::pair<std::string, std::string>, std::shared_ptr<const StarMap>> stars_;
+  std::set<std::string> checked_;  // names of objects
 };
 
 }  // namespace dmise

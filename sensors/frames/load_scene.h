@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "orbit-node/load_objects.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "sensors/frame/make_sensor.h"
 
 namespace dmise {
 

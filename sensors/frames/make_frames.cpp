@@ -10,8 +10,8 @@
 #include "nodes/own/own_actor.h"
 #include "nodes/own/own_detector.h"
 #include "orbit-node/orbit_actor.h"
-#include "sensors/pipeline/make_sensor.h"
-#include "sensors/pipeline/sensor_evaluator.h"
+#include "sensors/frame/make_sensor.h"
+#include "sensors/frame/sensor_evaluator.h"
 
 namespace dmise {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "nodes/own/own_node_run.h"
+#include "sensors/frame/frame_pipeline.h"
 #include "sensors/frames/load_scene.h"
-#include "sensors/pipeline/frame_pipeline.h"
 
 namespace dmise {
 

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "core/base/error.h"
-#include "core/base/mapped_file.h"
+#include "core/base/files/mapped_file.h"
+#include "core/base/files/paths.h"
 #include "core/base/memory.h"
-#include "core/base/paths.h"
 #include "core/config/scenario.h"
 #include "core/image/fits_file.h"
 #include "core/plan/cost_factors.h"
@@ -19,9 +19,9 @@
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
 #include "nodes/runtime/protocol/kept_frames.h"
-#include "sensors/pipeline/make_sensor.h"
-#include "sensors/pipeline/recorded_plans.h"
-#include "sensors/pipeline/stage_times.h"
+#include "sensors/frame/make_sensor.h"
+#include "sensors/frame/recorded_plans.h"
+#include "sensors/scene/stage_times.h"
 
 namespace {
 

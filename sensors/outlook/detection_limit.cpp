@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
-#include "core/detection/components.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/faint_streaks.h"
-#include "core/detector/expected_noise.h"
+#include "core/detection/pixels/components.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/streaks/faint_streaks.h"
+#include "core/detector/exposure/expected_noise.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/optics/psf_plan.h"
-#include "sensors/pipeline/sky_layer.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/light/sky_layer.h"
+#include "sensors/light/thermal_optics.h"
+#include "sensors/scene/throughput.h"
 
 namespace dmise {
 namespace {
@@ -91,6 +92,7 @@ PixelBackground background_at_centre(const View& view, const DrawnStars& drawn) 
     sky_e = sky_over(view, drawn).photons_per_s_m2_sr(view.enu_from_gcrs(middle) * boresight) *
             Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
             pixel_solid_angle_sr(optics, centre) * view.illumination(centre);
+  if (!view.shutter_closed()) sky_e += thermal_optics_e(view);
   const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
   return {sky_e + detector.dark_e_per_s * view.times().seconds(),
           noise_over_sky_e(sensor, view.times(), view.seed(), sky_e)};
@@ -111,12 +113,45 @@ double saturation_e(const Detector& acting) {
   return acting.well_is_limited ? std::min(most_e, acting.full_well_e) : most_e;
 }
 
+namespace {
+
+PsfPlan blur_plan(const SensorConfig& sensor) {
+  return plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
+                  sensor.exposure_s, AirTurbulence::level(sensor.effects));
+}
+
+}  // namespace
+
 double blur_sigma_px(const SensorConfig& sensor) {
-  const double fwhm_px = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
-                                  sensor.exposure_s, AirTurbulence::level(sensor.effects))
-                             .fwhm_px;
+  const double fwhm_px = blur_plan(sensor).fwhm_px;
   const double sigma_px = sensor.effects.has(PointSpread::facts) ? fwhm_px / fwhm_per_sigma : 0.0;
   return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
+}
+
+BlurByRange::BlurByRange(const SensorConfig& sensor)
+    : optics_(sensor.camera.optics),
+      stars_sigma_px_(blur_sigma_px(sensor)),
+      step_(sensor.effects.has(PointSpread::facts)
+                ? RangeDefocus::misplaced[std::size_t(sensor.effects.level(RangeDefocus::facts))]
+                : 1.0),
+      scale_(optics_, blur_plan(sensor)) {}
+
+double BlurByRange::disc_px(double range_m) const {
+  if (!(step_ < 1.0)) return 0.0;
+  const double in_focus_m = optics_.spread.defocus_m;
+  const double defocus_m = in_focus_m - range_defocus_m(optics_, range_m);
+  if (scale_.stepped_m(defocus_m, in_focus_m, step_) == in_focus_m) return 0.0;
+  return std::abs(scale_.disc_px(defocus_m));
+}
+
+double BlurByRange::sigma_px(double range_m) const {
+  const double disc_px = this->disc_px(range_m);
+  if (disc_px == 0.0) return stars_sigma_px_;
+  // The disc of stars is in the quadrature of their width as a Gaussian's.
+  const double of_stars_px = scale_.disc_px(optics_.spread.defocus_m) / fwhm_per_sigma;
+  const double focused_px2 =
+      std::max(1.0 / 12, stars_sigma_px_ * stars_sigma_px_ - of_stars_px * of_stars_px);
+  return std::sqrt(focused_px2 + disc_variance_px2(optics_, disc_px));
 }
 
 }  // namespace dmise

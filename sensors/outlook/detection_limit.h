@@ -1,8 +1,9 @@
 #pragma once
 #include <optional>
 
+#include "core/optics/range_defocus.h"
 #include "core/sky/faint_starlight.h"
-#include "sensors/pipeline/view.h"
+#include "sensors/scene/view.h"
 
 namespace dmise {
 
@@ -15,7 +16,7 @@ struct DetectionLimit {
 };
 
 /// Required SNR of the fit of a point or a whole streak, and of the brightest place of a streak in
-/// the frame filtered for points (core/detection/detection_limits.h).
+/// the frame filtered for points (core/detection/pixels/detection_limits.h).
 inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 
 /// For pixels of `noise_e` rms without the source, and the Gaussian `sigma_px` including the pixel.
@@ -54,5 +55,22 @@ double saturation_e(const Detector& acting);
 
 /// Gaussian width of a point in a sensor's frames, including the pixel.
 double blur_sigma_px(const SensorConfig& sensor);
+
+/// Width of a point by its range, which may be out of focus.
+class BlurByRange {
+ public:
+  explicit BlurByRange(const SensorConfig& sensor);
+
+  /// Diameter of its disc of defocus [px]; 0: it is as sharp as stars.
+  double disc_px(double range_m) const;
+  /// Deviation along an axis, including the pixel.
+  double sigma_px(double range_m) const;
+
+ private:
+  Optics optics_;
+  double stars_sigma_px_;
+  double step_;  // share of light that may be misplaced; 1: no notice is taken of the range
+  DefocusScale scale_;
+};
 
 }  // namespace dmise

@@ -4,16 +4,19 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/detection/pixels/components.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/air_exposure.h"
-#include "core/sky/earth_limb.h"
+#include "core/sky/air/air_exposure.h"
+#include "core/sky/bodies/earth_limb.h"
 #include "core/visibility/field_of_view.h"
-#include "sensors/pipeline/object_sampler.h"
-#include "sensors/pipeline/objects_in_field.h"
-#include "sensors/pipeline/star_layer.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/light/star_layer.h"
+#include "sensors/objects/object_sampler.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/planning/exposure_planner.h"
+#include "sensors/scene/seen_planet.h"
+#include "sensors/scene/throughput.h"
 
 namespace dmise {
 
@@ -67,19 +70,28 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   out.sun_in_field =
       FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) && !hides(unit(to_sun_m));
 
+  for (const Planet planet : view.planets()) {
+    const SeenPlanet seen = seen_planet(view, planet, middle);
+    out.planets.push_back(
+        {facts_of(planet).name, seen.v_mag, 2.0 * seen.radius_rad, is_drawn_as_disc(view, seen)});
+  }
   out.shutter_closed = view.shutter_closed();
   const double reach_px = 5 * scene.psf_sigma_px + 1;  // radius of a source's light
   DrawnStars drawn;
   if (scene.stars && sensor.effects.has(StarBackground::facts)) {
     const StarLayer layer(sensor, scene.stars, scene.faintest_star_mag);
-    drawn = layer.drawn(scene.faintest_star_mag, sensor.effects);
+    const EffectSet asked = scene.planner ? scene.planner->asked_effects(view) : sensor.effects;
+    drawn = layer.drawn(scene.faintest_star_mag, asked);
     out.stars = out.shutter_closed ? 0 : layer.count(view, scene.faintest_star_mag, reach_px);
+    if (drawn.by_counts && !out.shutter_closed)
+      out.synthetic = {layer.expected_synthetic(view, asked), drawn.to_v_mag};
   }
   if (scene.count_objects && sensor.effects.has(SpaceObjects::facts))
     out.objects = out.shutter_closed ? 0 : objects_with_light(view, scene.shapes, reach_px);
 
   out.background = background_at_centre(view, drawn);
   out.full_e = saturation_e(acting_detector(sensor.camera.detector, sensor.effects));
+  out.thermal = thermal_limit(view, out.background, out.full_e, scene.psf_sigma_px);
   const double pixels_per_deg = deg / optics.pixel_angle_rad();
   out.streak_deg_per_s = usual_rate_deg_per_s;
   out.streak_px = usual_rate_deg_per_s * pixels_per_deg * view.times().seconds();
@@ -101,6 +113,12 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
     return throughput.zero_point_mag() + magnitude_of_light(e_per_s / through);
   };
   out.point_limit_v_mag = v_mag(limit.point_e / view.times().seconds());
+  const BlurByRange blur(sensor);
+  out.near_disc_px = blur.disc_px(near_range_m);
+  if (out.near_disc_px > 0.0)
+    out.near_limit_v_mag =
+        v_mag(limiting_point_e(out.background.noise_e, blur.sigma_px(near_range_m)) /
+              view.times().seconds());
   if (limit.found_point_e)
     out.found_point_v_mag = v_mag(*limit.found_point_e / view.times().seconds());
   if (out.streak_px >= shortest_streak_px)

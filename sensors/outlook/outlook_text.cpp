@@ -1,12 +1,14 @@
 #include "sensors/outlook/outlook_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <set>
 
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
-#include "core/detection/detection_limits.h"
+#include "core/detection/pixels/detection_limits.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -18,16 +20,19 @@ using Frames = std::vector<FrameOutlook>;
 struct Range {
   double least = 0.0, most = 0.0;
   bool any = false;
+
+  void add(double value) {
+    least = any ? std::min(least, value) : value;
+    most = any ? std::max(most, value) : value;
+    any = true;
+  }
 };
 template <class T>
 Range range_of(const Frames& frames, std::optional<T> FrameOutlook::*figure, double unit = 1.0) {
   Range range;
   for (const auto& frame : frames) {
     if (!(frame.*figure)) continue;
-    const double value = double(*(frame.*figure)) / unit;
-    range.least = range.any ? std::min(range.least, value) : value;
-    range.most = range.any ? std::max(range.most, value) : value;
-    range.any = true;
+    range.add(double(*(frame.*figure)) / unit);
   }
   return range;
 }
@@ -84,6 +89,23 @@ std::string limit_text(const SensorOutlook& o) {
         "; half of the streaks of V = %.1f are found (%g deg/s, %.0f px, by their whole light)",
         *f.streak_limit_v_mag, f.streak_deg_per_s, f.streak_px);
   return text;
+}
+
+/// What a low orbit is out of focus; empty: as sharp as stars.
+std::string near_text(const SensorOutlook& o) {
+  if (!o.mid_run || !o.mid_run->near_limit_v_mag) return "";
+  return formatted(
+      "out of focus at %g km: a disc of %.3g arcsec (%.3g px), for which the limiting "
+      "magnitude is V = %.2f",
+      1e-3 * near_range_m, o.mid_run->near_disc_px * o.camera.pixel_rad / arcsec,
+      o.mid_run->near_disc_px, *o.mid_run->near_limit_v_mag);
+}
+
+std::string thermal_text(const ThermalLimit& t) {
+  return formatted(
+      "background %.3g e-/s a pixel in mid run, which fills it in %.3g s; noise-equivalent flux "
+      "density %.3g W/cm2, %.3g Jy, AB = %.2f",
+      t.background_e_per_s, t.fills_in_s, t.nefd_w_per_m2 * 1e-4, t.nefd_jy, t.nefd_ab_mag);
 }
 
 std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
@@ -177,6 +199,44 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   return warnings;
 }
 
+namespace {
+
+/// "Jupiter, V -2.3, a disc of 41 arcsec; Venus, V -4.0, a point" of the first frame with each.
+std::string planets_text(const std::vector<FrameOutlook>& frames) {
+  std::string text;
+  std::set<std::string_view> named;
+  for (const FrameOutlook& frame : frames)
+    for (const PlanetOutlook& p : frame.planets)
+      if (named.insert(p.name).second)
+        text += (text.empty() ? "" : "; ") + std::string(p.name) +
+                formatted(", V %.1f, ", p.v_mag) +
+                (p.is_disc ? formatted("a disc of %.0f arcsec", p.diameter_rad / arcsec)
+                           : std::string("a point"));
+  return text.empty() ? "" : "planets in the field: " + text;
+}
+
+/// A count to two significant digits.
+double to_two_digits(double count) {
+  const double unit =
+      std::pow(10.0, std::max(0.0, std::floor(std::log10(std::max(count, 1.0))) - 1.0));
+  return unit * std::round(count / unit);
+}
+
+/// " of the catalogue and about 9900 synthetic ones, to V = 17" ...
+std::string synthetic_text(const std::vector<FrameOutlook>& frames) {
+  Range count, limit;
+  for (const FrameOutlook& frame : frames) {
+    if (!frame.synthetic) continue;
+    count.add(to_two_digits(frame.synthetic->stars));
+    limit.add(frame.synthetic->to_v_mag);
+  }
+  if (!(count.most >= 0.5)) return "";
+  return " of the catalogue and about " + text_of(count, "%.0f") +
+         " synthetic ones, to V = " + text_of(limit, "%g");
+}
+
+}  // namespace
+
 std::string short_text(const SensorOutlook& o) {
   std::string text = field_text(o);
   if (!o.by_node.empty()) text += "; depends on what node " + o.by_node + " moves";
@@ -201,6 +261,8 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
     say("depends on what node " + o.by_node + " moves: its frames can't be examined beforehand");
   if (o.frames.empty()) return lines;
   if (const std::string limit = limit_text(o); !limit.empty()) say(limit);
+  if (const std::string near = near_text(o); !near.empty()) say(near);
+  if (o.mid_run && o.mid_run->thermal) say(thermal_text(*o.mid_run->thermal));
   if (o.on_ground) {
     std::string text = "elevation of the boresight " +
                        course_of(o.frames, &FrameOutlook::boresight_elevation_rad) + ", the Sun " +
@@ -218,11 +280,12 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   const Range stars = range_of(o.frames, &FrameOutlook::stars);
   const Range objects = range_of(o.frames, &FrameOutlook::objects);
   std::string text;
-  if (stars.any) text = text_of(stars, "%.0f") + " stars";
+  if (stars.any) text = text_of(stars, "%.0f") + " stars" + synthetic_text(o.frames);
   if (objects.any)
     text += (text.empty() ? "" : ", ") + text_of(objects, "%.0f") +
             (objects.most == 1.0 ? " lit object" : " lit objects");
   if (!text.empty()) say(text + " in the field (" + looked_at(o) + " looked at)");
+  if (const std::string planets = planets_text(o.frames); !planets.empty()) say(planets);
   if (!o.objects_counted) say("objects in the field are not counted: too many");
   return lines;
 }
@@ -238,6 +301,11 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
   json.field("point_limit_snr", detection_limits::seed_snr);
   json.field("streak_limit_snr", streak_limit_snr);
   if (o.mid_run) json.field("limiting_magnitude", o.mid_run->point_limit_v_mag);
+  if (o.mid_run && o.mid_run->near_limit_v_mag) {
+    json.key("out_of_focus").begin_object().field("range_m", near_range_m);
+    json.field("disc_px", o.mid_run->near_disc_px);
+    json.field("limiting_magnitude", o.mid_run->near_limit_v_mag).end_object();
+  }
   if (!o.target.empty()) json.field("target", o.target);
   if (o.cued) json.field("cued", true);
   if (!o.excluded.empty()) {
@@ -273,8 +341,27 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     angle("limb_angle_deg", f.limb_angle_rad);
     json.field("boresight_hidden", f.boresight_hidden).field("target_hidden", f.target_hidden);
     json.field("sun_in_field", f.sun_in_field);
+    if (!f.planets.empty()) {
+      json.key("planets").begin_array();
+      for (const PlanetOutlook& planet : f.planets)
+        json.begin_object()
+            .field("name", std::string(planet.name))
+            .field("v_mag", planet.v_mag)
+            .field("diameter_arcsec", planet.diameter_rad / arcsec)
+            .field("is_disc", planet.is_disc)
+            .end_object();
+      json.end_array();
+    }
     if (f.shutter_closed) json.field("shutter_closed", true);
     json.field("background_e", f.background.electrons).field("noise_e", f.background.noise_e);
+    if (f.thermal) {
+      json.key("thermal").begin_object();
+      json.field("background_e_per_s", f.thermal->background_e_per_s);
+      json.field("fills_in_s", f.thermal->fills_in_s);
+      json.field("nefd_w_per_m2", f.thermal->nefd_w_per_m2);
+      json.field("nefd_jy", f.thermal->nefd_jy);
+      json.field("nefd_ab_mag", f.thermal->nefd_ab_mag).end_object();
+    }
     json.field("saturates_at_e", f.full_e).field("extinction_mag", f.extinction_mag);
     if (f.point_limit_v_mag) json.field("point_limit_v_mag", *f.point_limit_v_mag);
     json.field("streak_deg_per_s", f.streak_deg_per_s).field("streak_px", f.streak_px);
@@ -282,6 +369,12 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     json.field("star_px", f.star_px);
     if (f.streak_limit_v_mag) json.field("streak_limit_v_mag", *f.streak_limit_v_mag);
     if (f.stars) json.field("stars", std::int64_t(*f.stars));
+    if (f.synthetic)
+      json.key("synthetic_stars")
+          .begin_object()
+          .field("expected", f.synthetic->stars)
+          .field("to_v_mag", f.synthetic->to_v_mag)
+          .end_object();
     if (f.objects) json.field("objects", std::int64_t(*f.objects));
     json.end_object();
   }

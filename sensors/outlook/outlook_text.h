@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "sensors/outlook/sensor_outlook.h"
 
 namespace dmise {

@@ -1,8 +1,9 @@
 #include "sensors/outlook/plan_outlook.h"
 
 #include "core/effects/frame_effects.h"
-#include "sensors/pipeline/exposure_planner.h"
-#include "sensors/pipeline/objects_in_field.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/objects/world_source.h"
+#include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
 
@@ -20,7 +21,7 @@ std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig&
   const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
                             models_of(scenario.objects));
   const ExposurePlanner planner(sensor, stars, scenario.faintest_star_mag, &shapes);
-  FrameWorlds worlds(scenario, sensor, clock);
+  const WorldSource worlds(scenario, sensor, clock, close_environments_s);
   for (const std::uint32_t frame : evenly(frames_within(sensor, scenario.duration), most_frames)) {
     const FrameTimes exposure = frame_times(sensor, frame);
     const World world = worlds.around(exposure, seen, source);

@@ -3,9 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/config/scenario.h"
 #include "core/plan/planner.h"
-#include "core/sky/star_map.h"
-#include "sensors/outlook/frame_worlds.h"
+#include "core/propagation/object_states.h"
+#include "core/sky/stars/star_map.h"
 
 namespace dmise {
 

@@ -5,11 +5,13 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/effects/frame_effects.h"
-#include "sensors/outlook/frame_worlds.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/objects/world_source.h"
 #include "sensors/outlook/outlook_text.h"
+#include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
 namespace {
@@ -50,7 +52,7 @@ std::string node_of(const ObjectPopulation& objects) {
 /// Examines all frames, or evenly spaced ones, for bodies that are too near to the axis.
 void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
                         const ObjectPopulation& needed, const StateSource& source,
-                        std::uint32_t frames, FrameWorlds& worlds, SensorOutlook& out) {
+                        std::uint32_t frames, const WorldSource& worlds, SensorOutlook& out) {
   const Exclusion& limits = sensor.camera.exclusion;
   for (const ExcludingBody& body : excluding_bodies)
     if (const auto& limit_deg = limits.*body.limit_deg)
@@ -98,7 +100,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   if (loss && loss->frame == 1) throw ConfigError(sensor.where + ": " + loss->why);
   const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
 
-  FrameWorlds worlds(scenario, sensor, clock);
+  const WorldSource worlds(scenario, sensor, clock, close_environments_s);
   if (options.most_frames > 0 && sensor.camera.exclusion.any()) {
     out.exclusion_action = sensor.camera.exclusion.action;
     look_for_exclusion(scenario, sensor, needed, source_of_needed, frames, worlds, out);
@@ -120,9 +122,11 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   const StateSource source(seen, clock, threads);
   const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
                             models_of(scenario.objects));
+  const ExposurePlanner planner(sensor, stars.get(), scenario.faintest_star_mag, &shapes);
   const OutlookScene scene{.stars = std::move(stars),
                            .faintest_star_mag = scenario.faintest_star_mag,
                            .shapes = &shapes,
+                           .planner = &planner,
                            .psf_sigma_px = blur_sigma_px(sensor),
                            .count_objects = out.objects_counted};
   const auto look_at = [&](std::uint32_t frame, const OutlookScene& with) {

@@ -7,7 +7,7 @@
 #include "core/time/clock.h"
 #include "sensors/outlook/camera_figures.h"
 #include "sensors/outlook/frame_outlook.h"
-#include "sensors/pipeline/exclusion.h"
+#include "sensors/scene/exclusion.h"
 
 namespace dmise {
 

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/base/paths.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/paths.h"
+#include "core/base/files/whole_file.h"
 
 namespace dmise {
 namespace {

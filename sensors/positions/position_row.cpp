@@ -2,9 +2,9 @@
 
 #include <charconv>
 
+#include "core/base/files/json.h"
+#include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
-#include "core/base/json.h"
-#include "core/base/text_fields.h"
 #include "core/base/units.h"
 
 namespace dmise {

@@ -6,7 +6,7 @@
 #include "core/time/iso8601.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
-#include "sensors/pipeline/world.h"
+#include "sensors/scene/world.h"
 
 namespace dmise {
 namespace {
@@ -76,9 +76,7 @@ std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick ti
   const auto site = site_of(sensor);
   if (site) {
     scene.site = &*site;
-    const Vec<Itrs> site_m = itrs_from_geodetic(*site);
-    scene.observer = {scene.itrs_from_gcrs.inverse() * site_m,
-                      earth.velocity_of_fixed_point(site_m, t)};
+    scene.observer = standing_at(itrs_from_geodetic(*site), earth, t);
   } else {
     scene.observer = {states_->position(*mount.platform), states_->slope(*mount.platform)};
   }

@@ -7,10 +7,10 @@
 
 #include "core/base/error.h"
 #include "sensors/render/box_filter.h"
-#include "sensors/render/gl.h"
-#include "sensors/render/gl_context.h"
-#include "sensors/render/gl_program.h"
-#include "sensors/render/gl_textures.h"
+#include "sensors/render/gl/gl.h"
+#include "sensors/render/gl/gl_context.h"
+#include "sensors/render/gl/gl_program.h"
+#include "sensors/render/gl/gl_textures.h"
 #include "sensors/render/shaders.h"
 #include "sensors/render/tile_mesh.h"
 

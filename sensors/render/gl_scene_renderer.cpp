@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "sensors/render/gl.h"
-#include "sensors/render/gl_context.h"
-#include "sensors/render/gl_program.h"
+#include "sensors/render/gl/gl.h"
+#include "sensors/render/gl/gl_context.h"
+#include "sensors/render/gl/gl_program.h"
 #include "sensors/render/gl_renderer.h"
 #include "sensors/render/scene_shaders.h"
 

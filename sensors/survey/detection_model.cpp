@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/golden_section.h"
-#include "core/detection/detection_limits.h"
+#include "core/base/numeric/golden_section.h"
+#include "core/detection/pixels/detection_limits.h"
 #include "core/score/matched_filter.h"
 
 namespace dmise {
@@ -45,11 +45,25 @@ double among_trails(const ExpectedTrail& trail) {
   return way(DetectionModel::round_px, DetectionModel::trailed_px, trail.star_px);
 }
 
+double among_far_trails(const ExpectedTrail& trail) {
+  return way(DetectionModel::long_px, DetectionModel::far_px, trail.star_px);
+}
+
+/// How far a trail is from a point: 0 of one, 1 from `row_px` on.
+double longer_than_point(const ExpectedTrail& trail) {
+  return way(log_px(DetectionModel::point_px), log_px(DetectionModel::row_px),
+             log_px(trail.length_px));
+}
+
 /// By the trail's length.
 DetectionCurve curve_of(const DetectionModel& model, const ExpectedTrail& trail) {
   using M = DetectionModel;
   const DetectionCurve usual = curve_at(model.trailed, trail.length_px);
-  const DetectionCurve among_long = curve_at(model.trailed, std::max(trail.length_px, M::row_px));
+  const DetectionCurve row = curve_at(model.trailed, std::max(trail.length_px, M::row_px));
+  const DetectionCurve far = model.far.empty() ? row
+                                               : mixed(curve_at(model.far, trail.length_px), row,
+                                                       longer_than_point(trail));
+  const DetectionCurve among_long = mixed(row, far, among_far_trails(trail));
   const DetectionCurve among_round =
       curve_at(trail.star_known ? model.round_known : model.round, trail.length_px);
   return mixed(among_round, mixed(usual, among_long, way(M::trailed_px, M::long_px, trail.star_px)),
@@ -57,9 +71,8 @@ DetectionCurve curve_of(const DetectionModel& model, const ExpectedTrail& trail)
 }
 
 double share_of(const DetectionModel& model, const ExpectedTrail& trail) {
-  const double longer = way(log_px(DetectionModel::point_px), log_px(DetectionModel::row_px),
-                            log_px(trail.length_px));
-  const double share = std::lerp(model.share_points, model.share, longer);
+  const double points = std::lerp(model.share_points, model.share_far, among_far_trails(trail));
+  const double share = std::lerp(points, model.share, longer_than_point(trail));
   return std::lerp(model.share_round, share, among_trails(trail));
 }
 
@@ -82,9 +95,9 @@ double badness(const DetectionModel& model, const DetectionModel& start,
       sum += 0.5 * square(std::log(m.half_snr / s.half_snr) / prior_half) +
              0.5 * square(std::log(m.spread / s.spread) / prior_spread);
     }
-  return sum + 0.5 * square((model.share - start.share) / prior_share) +
-         0.5 * square((model.share_points - start.share_points) / prior_share) +
-         0.5 * square((model.share_round - start.share_round) / prior_share);
+  for (std::size_t k = 0; k < model.shares().size(); ++k)
+    sum += 0.5 * square((*model.shares()[k] - *start.shares()[k]) / prior_share);
+  return sum;
 }
 
 /// Where a function is least within [low, high].
@@ -140,7 +153,7 @@ DetectionModel fitted_detection_model(const DetectionModel& start,
           return badness(model, start, telling);
         });
       }
-    for (double* share : {&model.share, &model.share_points, &model.share_round})
+    for (double* share : model.shares())
       *share = least_of(least_share, 1.0, [&](double value) {
         *share = value;
         return badness(model, start, telling);

@@ -33,17 +33,27 @@ struct DetectionModel {
   // Among stars that trail by less than `round_px`: a short trail looks like a few of them in a row
   // unless the catalogue would have such stars. In between both are mixed.
   Nodes round, round_known;
+  // Points among stars that trail by more than `far_px`, which are subtracted; none: they are found
+  // as trails of `row_px`.
+  Nodes far;
   // By `shape_difference_px`, unless the catalogue would have such stars; none: it does not matter.
   Nodes shape;
   // Of bright sources that are found, (0, 1]: trails of `row_px` or more and points, among stars
-  // that trail, and anything among round ones.
-  double share = 1.0, share_points = 1.0, share_round = 1.0;
+  // that trail; points among those of `far_px`; and anything among round ones.
+  double share = 1.0, share_points = 1.0, share_far = 1.0, share_round = 1.0;
 
-  static constexpr double round_px = 0.4, trailed_px = 2.4, long_px = 6.0;  // of stars' trails
-  static constexpr double point_px = 1.0, row_px = 14.0;                    // of objects' trails
+  static constexpr double round_px = 0.4, trailed_px = 2.4, long_px = 6.0,
+                          far_px = 12.0;                  // of stars' trails
+  static constexpr double point_px = 1.0, row_px = 14.0;  // of objects' trails
   /// All nodes.
-  std::array<Nodes*, 4> nodes() { return {&trailed, &round, &round_known, &shape}; }
-  std::array<const Nodes*, 4> nodes() const { return {&trailed, &round, &round_known, &shape}; }
+  std::array<Nodes*, 5> nodes() { return {&trailed, &round, &round_known, &far, &shape}; }
+  std::array<const Nodes*, 5> nodes() const {
+    return {&trailed, &round, &round_known, &far, &shape};
+  }
+  std::array<double*, 4> shares() { return {&share, &share_points, &share_far, &share_round}; }
+  std::array<const double*, 4> shares() const {
+    return {&share, &share_points, &share_far, &share_round};
+  }
 
   bool operator==(const DetectionModel&) const = default;
 };

@@ -5,24 +5,23 @@
 #include <limits>
 
 #include "core/base/units.h"
-#include "core/detection/catalogue_sky.h"
-#include "core/detection/detection_limits.h"
+#include "core/detection/known/catalogue_sky.h"
+#include "core/detection/pixels/detection_limits.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/score/matched_filter.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
+#include "sensors/light/sky_layer.h"
+#include "sensors/light/star_layer.h"
+#include "sensors/light/thermal_optics.h"
+#include "sensors/objects/object_sampler.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/objects/world_source.h"
 #include "sensors/outlook/detection_limit.h"
-#include "sensors/pipeline/object_sampler.h"
-#include "sensors/pipeline/objects_in_field.h"
-#include "sensors/pipeline/sky_layer.h"
-#include "sensors/pipeline/star_layer.h"
 #include "sensors/survey/trail_in_frame.h"
 
 namespace dmise {
 namespace {
-
-/// Knots of an exposure's states are no farther apart: cubic interpolation is good to 4 m.
-constexpr std::int64_t longest_between_ns = 60'000'000'000;
 
 /// Samples of a trail whose light changes by more than a half; others have three.
 constexpr std::size_t many_samples = 33;
@@ -60,40 +59,14 @@ SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
       shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects,
               models_of(scene.scenario().objects)),
       noise_(sensor, scene.scenario().seed),
+      blur_(sensor),
       drawn_(drawn_of(scene, sensor)),
       complete_to_v_mag_(scene.stars() ? CatalogueSky(scene.stars()).complete_to_v_mag()
                                        : -std::numeric_limits<double>::infinity()) {
   for (const std::size_t i : needed_objects(sensor, *scene.roster()))
     needed_.push_back(std::uint32_t(i));
-  const double blur = blur_sigma_px(sensor);
-  sigma_px_ = std::sqrt(std::max(0.0, blur * blur - 1.0 / 12));
   if (std::holds_alternative<SiteConfig>(sensor.place))
     mask_sine_ = std::sin(sensor.mask_deg * deg);
-}
-
-World SensorLooks::world_around(const FrameTimes& commanded,
-                                std::vector<std::uint32_t> objects) const {
-  World world;
-  world.add(scene_.roster());
-  const ExposureSpan span = exposure_span(sensor_, commanded);
-  world.add(scene_.environment(span.start));
-  const auto earth = scene_.environment(commanded.middle)->earth;
-  const Clock& clock = scene_.clock();
-  const auto instant = [&](SimTime t) {
-    return StateInstant{t, clock.tai(t), clock.utc(t), earth, earth.gcrs_from_teme(t)};
-  };
-  const std::int64_t length_ns = std::max<std::int64_t>(1, (span.end - span.start).ns);
-  const std::int64_t parts = (length_ns + longest_between_ns - 1) / longest_between_ns;
-  std::vector<ObjectStates> states;
-  for (Tick k = 0; k <= parts; ++k) {
-    const SimTime t{span.start.ns + length_ns * k / parts};
-    const StateInstants around{instant({t.ns - slope_half_step_ns}), instant(t),
-                               instant({t.ns + slope_half_step_ns})};
-    world.add_tick(k, t);
-    states.push_back(scene_.source().of_some(objects, k, around));
-  }
-  world.set_states(std::move(objects), std::move(states));
-  return world;
 }
 
 std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
@@ -103,8 +76,10 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
   all.insert(all.end(), needed_.begin(), needed_.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  const World world = world_around(commanded, std::move(all));
   const ExposureSpan span = exposure_span(sensor_, commanded);
+  const World world = world_of_some(scene_.roster(), scene_.environment(span.start),
+                                    scene_.environment(commanded.middle)->earth, span,
+                                    std::move(all), scene_.source());
   for (const std::uint32_t i : needed_)
     for (const SimTime t : {span.start, commanded.start, commanded.end, span.end})
       if (!world.has_state(i, t)) return std::nullopt;
@@ -127,12 +102,16 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
   const auto itrs_from_gcrs = view.earth().itrs_from_gcrs(times.middle);
   const Throughput throughput(view);
   const double electrons_per_photon = throughput.electrons_per_photon_m2() * times.seconds();
+  const PixelFunction warm_e = thermal_optics_electrons(view);
   const auto sky_at = [&](const PixelPosition& pixel) {
     const auto direction = unproject(optics, pixel);
-    if (!direction || !has_sky) return 0.0;
+    if (!direction) return 0.0;
+    const double heat_e = warm_e(pixel.x_px, pixel.y_px);
+    if (!has_sky) return heat_e;
     if (!sky) sky.emplace(sky_over(view, drawn_));
-    return sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
-           electrons_per_photon * pixel_solid_angle_sr(optics, pixel) * view.illumination(pixel);
+    return heat_e + sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
+                        electrons_per_photon * pixel_solid_angle_sr(optics, pixel) *
+                        view.illumination(pixel);
   };
   const double zero_point_mag = throughput.zero_point_mag();
   const double extinction_mag = throughput.extinction_mag_per_airmass();
@@ -179,7 +158,9 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
       return look;
     };
     Look look = look_at(trail);
-    look.snr = matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px_});
+    const double blur_px = blur_.sigma_px(norm(line));
+    const double sigma_px = std::sqrt(std::max(0.0, blur_px * blur_px - 1.0 / 12));  // no pixel
+    look.snr = matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px});
     const bool telling = look.snr >= detection_limits::least_snr ||
                          detection_probability(scene_.model(), look.trail()) >= least_probability;
     if (least < abrupt_ratio * most && telling) {
@@ -198,7 +179,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     look.noise_e = noise_.noise_e(sky_e);
     look.snr = 0.0;  // on a saturated sky
     if (sky_e < noise_.full_sky_e())
-      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
+      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px});
     if (telling) look.probability = detection_probability(scene_.model(), look.trail());
     out.looks.push_back(look);
   }

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "core/sky/faint_starlight.h"
-#include "sensors/pipeline/frame_times.h"
-#include "sensors/pipeline/object_shapes.h"
+#include "sensors/objects/object_shapes.h"
+#include "sensors/outlook/detection_limit.h"
+#include "sensors/scene/frame_times.h"
 #include "sensors/survey/noise_table.h"
 #include "sensors/survey/survey_scene.h"
 
@@ -53,14 +54,12 @@ class SensorLooks {
                                   std::span<const std::uint32_t> objects) const;
 
  private:
-  World world_around(const FrameTimes& commanded, std::vector<std::uint32_t> objects) const;
-
   const SurveyScene& scene_;
   const SensorConfig& sensor_;
   std::vector<std::uint32_t> needed_;  // platform and target, ascending
   ObjectShapes shapes_;
   NoiseTable noise_;
-  double sigma_px_ = 0.0;  // of the Gaussian without pixel
+  BlurByRange blur_;
   DrawnStars drawn_;
   double complete_to_v_mag_;
   double mask_sine_ = -1.0;

@@ -25,6 +25,7 @@ const DetectionModel& measured_detection_model() {
                                                     {20.0, 8.70, 0.275},
                                                     {28.0, 7.88, 0.266},
                                                     {50.0, 11.86, 0.299}},
+                                    .far = {{1.0, 7.50, 0.180}},
                                     .shape = {{0.0, 300.0, 0.353},
                                               {1.5, 55.69, 0.386},
                                               {1.8, 23.50, 0.323},
@@ -36,6 +37,7 @@ const DetectionModel& measured_detection_model() {
                                               {10.0, 3.00, 0.300}},
                                     .share = 0.9796,
                                     .share_points = 0.887,
+                                    .share_far = 0.955,
                                     .share_round = 0.995};
   return model;
 }

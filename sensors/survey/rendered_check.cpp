@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "core/score/association.h"
-#include "sensors/outlook/frame_worlds.h"
-#include "sensors/pipeline/frame_pipeline.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "sensors/frame/frame_pipeline.h"
+#include "sensors/frame/make_sensor.h"
+#include "sensors/objects/world_source.h"
 
 namespace dmise {
 namespace {
@@ -105,7 +105,7 @@ RenderedCheck check_rendered(const SurveyScene& scene, std::size_t count, FrameH
       frames.push_back(all[std::size_t((double(k) + 0.5) * double(all.size()) / double(wanted))]);
     const SensorLooks looks(scene, *sensor);
     const auto objects = objects_by_frame(scene, *sensor, frames, threads);
-    FrameWorlds worlds(scenario, *sensor, scene.clock());
+    const WorldSource worlds(scenario, *sensor, scene.clock());
     FramePipeline pipeline(sensor_settings(scenario, sensor->name, ""), scene.stars(), threads);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       if (options.progress)

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/base/formatted.h"
-#include "core/orbit/catalogue_report.h"
-#include "core/orbit/sgp4_terms.h"
+#include "core/orbit/sgp4/catalogue_report.h"
+#include "core/orbit/sgp4/sgp4_terms.h"
 
 namespace dmise {
 namespace {}  // namespace

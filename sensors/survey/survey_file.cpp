@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/files/digest.h"
+#include "core/base/files/paths.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 #include "core/base/formatted.h"
-#include "core/base/paths.h"
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {

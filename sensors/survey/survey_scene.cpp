@@ -1,24 +1,14 @@
 #include "sensors/survey/survey_scene.h"
 
 #include <algorithm>
-#include <variant>
 
-#include "nodes/environment/environment_actor.h"
+#include "core/propagation/environment_source.h"
 
 namespace dmise {
 namespace {
 
 /// Sun, Moon and Earth run on from such times: to 0.01 arcsec.
 const SimTime environment_every = sim_seconds(600.0);
-
-/// A scenario of nothing but the common environment.
-Scenario environment_alone() {
-  Scenario one;
-  one.tick = environment_every;
-  one.environment = {.common_every_s = 0.0};
-  one.network.sensors_propagate = false;
-  return one;
-}
 
 }  // namespace
 
@@ -31,12 +21,10 @@ SurveyScene::SurveyScene(const Scenario& scenario, const ObjectPopulation& popul
       roster_(std::make_shared<const ObjectRoster>(population.roster)),
       stars_(std::move(stars)),
       model_(model) {
-  EnvironmentActor actor(environment_alone(), clock);
   const Tick last = scenario.duration.ns / environment_every.ns + 1;
   for (Tick tick = 0; tick <= last; ++tick)
-    for (const auto& message : actor.step(tick, {}))
-      if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
-        environment_.push_back(std::shared_ptr<const EnvironmentState>(message.state, state));
+    environment_.push_back(std::make_shared<const EnvironmentState>(
+        environment_at(clock, tick, {tick * environment_every.ns})));
 }
 
 const std::shared_ptr<const EnvironmentState>& SurveyScene::environment(SimTime t) const {

@@ -5,7 +5,7 @@
 #include "core/config/scenario.h"
 #include "core/propagation/object_states.h"
 #include "core/sim/state.h"
-#include "core/sky/star_cache.h"
+#include "core/sky/stars/star_cache.h"
 #include "core/time/clock.h"
 #include "core/visibility/sky_hours.h"
 #include "sensors/survey/detection_model.h"

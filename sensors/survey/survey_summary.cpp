@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 
 namespace dmise {
 namespace {

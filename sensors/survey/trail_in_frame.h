@@ -2,7 +2,7 @@
 #include <span>
 
 #include "core/optics/camera.h"
-#include "sensors/pipeline/object_sampler.h"
+#include "sensors/objects/object_sampler.h"
 
 namespace dmise {
 

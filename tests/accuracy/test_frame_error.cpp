@@ -1,7 +1,6 @@
 #include "sensors/accuracy/frame_error.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +22,9 @@ class FrameErrors : public testing::Test {
  protected:
   explicit FrameErrors(const std::string& blur = "") {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
-    directory_ = std::filesystem::path(testing::TempDir()) /
-                 ("accuracy-" + std::to_string(getpid()) + "-" +
-                  testing::UnitTest::GetInstance()->current_test_info()->name());
+    directory_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("accuracy-") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(directory_);
     std::ofstream(directory_ / "stars.csv") << "ra_deg,dec_deg,mag_v,id,bv\n85.2,0.7,9,1,0.6\n";
     std::ofstream(directory_ / "scene.yaml") << R"(

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/astrometry/plate_solver.h"
-#include "core/sky/star_cache.h"
+#include "core/sky/stars/star_cache.h"
 #include "tests/support/data.h"
 
 namespace dmise::test {

@@ -1,4 +1,4 @@
-#include "core/base/assignment.h"
+#include "core/base/numeric/assignment.h"
 
 #include <gtest/gtest.h>
 

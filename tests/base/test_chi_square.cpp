@@ -1,4 +1,4 @@
-#include "core/base/chi_square.h"
+#include "core/base/numeric/chi_square.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/base/digest.h"
+#include "core/base/files/digest.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "core/base/crc32c.h"
+#include "core/base/files/crc32c.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/base/file_version.h"
+#include "core/base/files/file_version.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ struct FileVersions : testing::Test {
     return file_version(path_);
   }
 
-  const std::string path_ = testing::TempDir() + "version-" + std::to_string(getpid());
+  const std::string path_ = testing::TempDir() + "version";
 };
 
 TEST_F(FileVersions, AreEqualUntilTheFileChanges) {

@@ -1,4 +1,4 @@
-#include "core/base/golden_section.h"
+#include "core/base/numeric/golden_section.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/monotone_cubic.h"
+#include "core/base/numeric/monotone_cubic.h"
 
 namespace dmise {
 namespace {

@@ -1,7 +1,6 @@
-#include "core/base/paths.h"
+#include "core/base/files/paths.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,7 +11,7 @@ namespace dmise {
 namespace {
 
 TEST(Paths, MakesDirectoriesAndSaysWhyItCannot) {
-  const std::string top = testing::TempDir() + "/paths-" + std::to_string(getpid());
+  const std::string top = testing::TempDir() + "/paths";
   EXPECT_FALSE(path_exists(top));
   make_directories(top + "/a/b");
   make_directories(top + "/a/b");

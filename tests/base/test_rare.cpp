@@ -1,4 +1,4 @@
-#include "core/base/rare.h"
+#include "core/base/numeric/rare.h"
 
 #include <gtest/gtest.h>
 

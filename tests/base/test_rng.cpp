@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/base/table_place.h"
+#include "core/base/numeric/table_place.h"
 
 #include <gtest/gtest.h>
 

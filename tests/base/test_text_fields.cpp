@@ -1,4 +1,4 @@
-#include "core/base/text_fields.h"
+#include "core/base/files/text_fields.h"
 
 #include <gtest/gtest.h>
 

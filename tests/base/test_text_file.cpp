@@ -1,5 +1,5 @@
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
+#include "core/base/files/regular_file.h"
 
 namespace dmise {
 namespace {
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 class TextFile : public testing::Test {
  protected:
-  fs::path directory = fs::path(testing::TempDir()) / ("text-file-" + std::to_string(getpid()));
+  fs::path directory = fs::path(testing::TempDir()) / "text-file";
   void SetUp() override { fs::create_directories(directory); }
   void TearDown() override { fs::remove_all(directory); }
   std::string path(const char* name) const { return (directory / name).string(); }

@@ -1,4 +1,4 @@
-#include "core/base/user_directories.h"
+#include "core/base/files/user_directories.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/base/vector_math.h"
+#include "core/base/numeric/vector_math.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/rng_at.h"
+#include "core/base/numeric/rng_at.h"
 
 namespace dmise {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/calibration/known_defects.h"
-#include "core/sky/star_cache.h"
+#include "core/sky/stars/star_cache.h"
 #include "core/wcs/wcs.h"
 #include "tests/support/data.h"
 #include "tests/support/simulated_frame.h"

@@ -10,12 +10,12 @@
 #include <random>
 
 #include "core/base/error.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/detection/detect.h"
-#include "core/detection/unknown_fields.h"
 #include "core/frames/quaternion.h"
-#include "core/sky/airmass.h"
-#include "core/sky/star_cache.h"
+#include "core/products/unknown_fields.h"
+#include "core/sky/air/airmass.h"
+#include "core/sky/stars/star_cache.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs.h"

@@ -59,8 +59,8 @@ def last_frames(frames, out):
 
 def test(binary, directory):
     out, path, shown = directory / "out", directory / "run.mcap", directory / "shown.rrd"
-    # Ten seconds, so that the run does not end before its readers have begun.
-    scenario = write_scenario(directory, duration_s=5 * FRAMES, network=", real_time: 30")
+    # Fifteen seconds, so that the run does not end before its readers have begun.
+    scenario = write_scenario(directory, duration_s=5 * FRAMES, network=", real_time: 20")
     with Run(binary, "launch", scenario, "--out", out) as run:
         announced = out / "logs/master.address"
         address = wait_until(lambda: announced.exists() and announced.read_text().strip(), "the time-master's address")

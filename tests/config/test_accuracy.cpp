@@ -4,10 +4,10 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/config/effect_list.h"
-#include "core/config/effects_config.h"
 #include "core/config/schema.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/effect_list.h"
+#include "core/config/sensors/effects_config.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "core/effects/frame_effects.h"
 #include "core/effects/plan_facts.h"
 #include "core/optics/image_optics.h"
@@ -91,7 +91,7 @@ TEST(EffectLevels, ALevelThatThereIsNotIsRefused) {
 
 TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeastAccurate) {
   // What has another choice than its level, is asked for by scenarios alone, or always runs.
-  const std::set<std::string_view> as_asked{"earthshine", "moonlight", "thermal_emission",
+  const std::set<std::string_view> as_asked{"earthshine", "moonlight", "thermal_emission", "glints",
                                             "streak",     "evaluator", "quantisation"};
   SensorConfig sensor;
   sensor.place = SiteConfig{};
@@ -118,16 +118,22 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
                                                .gases = true,
                                                .stars = true,
                                                .shapes = true,
+                                               .glints = true,
                                                .vignettes = true,
                                                .diffracts = true,
                                                .turbulent = true,
                                                .synthetic_stars = true,
+                                               .blurs = true,
                                                .blur_varies = true,
                                                .focus_drifts = true,
                                                .stray_light = true,
+                                               .thermal = true,
+                                               .warm_optics = true,
                                                .sun_in_field = true,
                                                .moon_in_field = true,
                                                .earth_in_field = true,
+                                               .planets_in_field = true,
+                                               .daylight = true,
                                                .limb_in_field = true});
   for (const EffectFacts* effect : all_effects())
     EXPECT_TRUE(

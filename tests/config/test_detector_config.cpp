@@ -1,11 +1,11 @@
-#include "core/config/detector_config.h"
+#include "core/config/sensors/detector_config.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/config/camera_config.h"
 #include "core/config/output_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/camera_config.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "tests/support/detector_of.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "core/config/distribution.h"
+#include "core/config/yaml/distribution.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "core/base/error.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 

@@ -1,7 +1,6 @@
-#include "core/config/earth_config.h"
+#include "core/config/objects/earth_config.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
@@ -31,8 +30,7 @@ std::string text(const std::string& simulation, const std::string& objects = "",
 
 class OwnEarth : public testing::Test {
  protected:
-  std::filesystem::path directory =
-      std::filesystem::path(testing::TempDir()) / ("own-earth-" + std::to_string(getpid()));
+  std::filesystem::path directory = std::filesystem::path(testing::TempDir()) / "own-earth";
   void SetUp() override {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
     std::filesystem::create_directories(directory);

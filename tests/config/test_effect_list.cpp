@@ -1,18 +1,18 @@
-#include "core/config/effect_list.h"
+#include "core/config/sensors/effect_list.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "core/base/text_file.h"
-#include "core/config/effects_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/base/files/text_file.h"
+#include "core/config/sensors/effects_config.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/facet_light.h"
-#include "core/sky/air_effects.h"
-#include "core/sky/dispersion.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/air/air_effects.h"
+#include "core/sky/air/dispersion.h"
+#include "core/sky/places/place_effects.h"
 #include "core/sky/sky_model.h"
 
 namespace dmise {

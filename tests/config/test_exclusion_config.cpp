@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/config/exclusion_config.h"
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/exclusion_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -47,8 +47,7 @@ TEST(ExclusionConfig, RefusesBadValuesInOneLine) {
 
 class WithExclusion : public testing::Test {
  protected:
-  std::filesystem::path directory =
-      std::filesystem::path(testing::TempDir()) / ("exclusion-" + std::to_string(getpid()));
+  std::filesystem::path directory = std::filesystem::path(testing::TempDir()) / "exclusion";
   void SetUp() override {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
     std::filesystem::create_directories(directory);

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/config/optics_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/optics_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 // Tables over the field and the drift of the focus in a camera's file.
 namespace dmise {

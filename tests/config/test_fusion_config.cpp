@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_reader.h"
+#include "core/orbit/elements/epoch.h"
+#include "core/time/iso8601.h"
+#include "tests/support/data.h"
 
 namespace dmise {
 namespace {
@@ -35,6 +38,27 @@ TEST(FusionConfig, ReadsItsKeys) {
   EXPECT_EQ(c.settings.lost_after_s, FusionSettings().lost_after_s);
   EXPECT_EQ(c.not_in_catalogue, (std::vector<std::string>{"MYSTERY", "12345"}));
   EXPECT_EQ(read("on").settings.gate_d2, FusionSettings().gate_d2);
+}
+
+// Element sets of demo.tle are of the days before 2018-01-21.
+TEST(FusionConfig, ReadsWhatTrackersBelieve) {
+  const std::string file = test::catalogue_path("demo.tle");
+  const FusionConfig c = read("{catalogue: \"" + file + "\", age_days: 3}");
+  EXPECT_EQ(c.catalogue_path, file);
+  EXPECT_EQ(c.age_days, 3);
+  const Utc night = parse_utc("2018-01-21T00:00:00Z");
+  for (const MeanElements& e : believed_elements(c, night))
+    EXPECT_GE(epoch_days_between({e.epoch_jd1, e.epoch_jd2}, night), 3 - 1e-6);
+  FusionConfig any = c;
+  any.age_days.reset();
+  EXPECT_GT(believed_elements(any, night).size(), believed_elements(c, night).size());
+  FusionConfig old = c;
+  old.age_days = 9000;
+  EXPECT_THROW(believed_elements(old, night), ConfigError);
+  EXPECT_NE(complaint("{age_days: 3}").find("fusion.age_days: goes with catalogue"),
+            std::string::npos)
+      << complaint("{age_days: 3}");
+  EXPECT_NE(complaint("{catalogue: nowhere.tle}").find("fusion.catalogue"), std::string::npos);
 }
 
 TEST(FusionConfig, NamesTheKeyOfWhatIsWrong) {

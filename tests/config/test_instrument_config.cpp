@@ -1,14 +1,14 @@
-#include "core/config/instrument_config.h"
+#include "core/config/sensors/instrument_config.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
-#include "core/base/text_file.h"
+#include "core/base/files/json.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
-#include "core/config/effect_list.h"
-#include "core/config/sensor_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/effect_list.h"
+#include "core/config/sensors/sensor_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -1,7 +1,6 @@
 #include "core/config/load_star_catalogue.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -29,8 +28,7 @@ struct LoadStarCatalogue : testing::Test {
     return test::config_error_of([&] { load_star_catalogue(name, "catalogue"); });
   }
 
-  const std::filesystem::path directory_ =
-      std::filesystem::path(testing::TempDir()) / ("stars-" + std::to_string(getpid()));
+  const std::filesystem::path directory_ = std::filesystem::path(testing::TempDir()) / "stars";
 };
 
 TEST_F(LoadStarCatalogue, ByNameOrFileOrNone) {

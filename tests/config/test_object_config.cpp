@@ -1,13 +1,13 @@
-#include "core/config/object_config.h"
+#include "core/config/objects/object_config.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/base/units.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -102,6 +102,49 @@ TEST(ObjectConfig, AttitudesOfEveryKind) {
   EXPECT_NEAR((later * Vec<Body>{1, 0, 0}).x, -1.0, 1e-15);
 }
 
+// A body that spins about the axis of its symmetry turns as `spinning` does.
+TEST(ObjectConfig, ATumblingBodyTurnsByItsInertia) {
+  const auto attitude = [](const std::string& text) {
+    return object("{fixed: {gcrs_m: [1e7, 0, 0]}}", ", attitude: {tumbling: {" + text + "}}")
+        .attitude->model;
+  };
+  const AttitudeScene later{.time_s = 7.0, .position_m = {1e7, 0, 0}};
+  const auto turned =
+      gcrs_from_body(attitude("inertia_kg_m2: [900, 8000, 8000], rate_deg_per_s: [12, 0, 0], "
+                              "gcrs_from_body: [0.5, 0.5, 0.5, 0.5]"),
+                     later);
+  const auto spinning = gcrs_from_body(
+      object("{fixed: {gcrs_m: [1e7, 0, 0]}}",
+             ", attitude: {spinning: {axis: [1, 0, 0], rate_rpm: 2, gcrs_from_body: [0.5, 0.5, "
+             "0.5, 0.5]}}")
+          .attitude->model,
+      later);
+  for (const Vec<Body>& axis : {Vec<Body>{1, 0, 0}, {0, 1, 0}})
+    EXPECT_LT(angle_rad(turned * axis, spinning * axis), 1e-14);
+  const std::string fixed = "- {name: x, motion: {fixed: {gcrs_m: [1e7, 0, 0]}}, attitude: ";
+  EXPECT_EQ(complaint(fixed + "{tumbling: {inertia_kg_m2: [1, 2, 3.5], rate_deg_per_s: [1, 0, "
+                              "0]}}}"),
+            "s.yaml:2:90: objects[0].attitude.tumbling.inertia_kg_m2: no body has these moments: "
+            "one is beyond the sum of the others");
+  EXPECT_EQ(complaint(fixed + "{tumbling: {inertia_kg_m2: [1, 0, 1], rate_deg_per_s: [1, 0, 0]}}}"),
+            "s.yaml:2:94: objects[0].attitude.tumbling.inertia_kg_m2[1]: must be > 0, got 0");
+  EXPECT_EQ(complaint(fixed + "{tumbling: {inertia_kg_m2: [1, 1, 1]}}}"),
+            "s.yaml:2:74: objects[0].attitude.tumbling.rate_deg_per_s: is missing");
+}
+
+// Ticks of a minute are too long for a turn in a minute about a third axis.
+TEST(ObjectConfig, TicksTooLongForATumblingBodyAreWarnedOf) {
+  const AttitudeConfig attitude =
+      *object("{fixed: {gcrs_m: [1e7, 0, 0]}}",
+              ", attitude: {tumbling: {inertia_kg_m2: [900, 8000, 8000], rate_deg_per_s: [6, 6, "
+              "0]}}")
+           .attitude;
+  EXPECT_FALSE(coarse_tick_warning(attitude, 1.0));
+  const std::string warning = coarse_tick_warning(attitude, 20.0).value_or("");
+  EXPECT_NE(warning.find("objects[0].attitude: between ticks it is up to "), std::string::npos)
+      << warning;
+}
+
 TEST(ObjectConfig, ObjectsWithoutANumberGetOneInOrder) {
   const auto own =
       read(
@@ -118,18 +161,28 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
   const std::string fixed = "motion: {fixed: {gcrs_m: [1e7, 0, 0]}}";
   EXPECT_EQ(complaint("- {name: x}"), "s.yaml:2:3: objects[0].motion: is missing");
   EXPECT_EQ(complaint("- {radius_m: 2}"),
-            "s.yaml:2:3: objects[0]: needs a catalogue, or a name and a motion");
+            "s.yaml:2:3: objects[0]: needs a catalogue, a walker, a train, a breakup, or a name "
+            "and a motion");
   EXPECT_EQ(complaint("- {name: x, " + fixed + ", albdo: 1}"),
             "s.yaml:2:53: objects[0].albdo: unknown key, did you mean albedo?");
   EXPECT_EQ(complaint("- {name: x, motion: {flying: {}}}"),
             "s.yaml:2:22: objects[0].motion.flying: unknown key");
   EXPECT_EQ(
       complaint("- {name: x, motion: {}}"),
-      "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, enu, sgp4, node");
+      "s.yaml:2:21: objects[0].motion: give one of two_body, numerical, oem, sp3, fixed, track, "
+      "enu, sgp4, proximity, node");
   EXPECT_EQ(complaint("- {name: x, motion: {track: none.csv}}"),
             "s.yaml:2:29: objects[0].motion.track: there is no such file, got none.csv");
   EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem}}"),
             "s.yaml:2:27: objects[0].motion.oem: there is no such file, got none.oem");
+  EXPECT_EQ(complaint("- {name: x, motion: {sp3: none.sp3, satellite: L71}}"),
+            "s.yaml:2:27: objects[0].motion.sp3: there is no such file, got none.sp3");
+  EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem, satellite: L71}}"),
+            "s.yaml:2:48: objects[0].motion.satellite: goes with sp3");
+  EXPECT_EQ(
+      complaint("- {name: x, motion: {satellite: L71}}"),
+      "s.yaml:2:21: objects[0].motion: give one of two_body, numerical, oem, sp3, fixed, track, "
+      "enu, sgp4, proximity, node");
   EXPECT_EQ(complaint("- {name: x, motion: {fixed: {itrs_m: [1, 2]}}}"),
             "s.yaml:2:38: objects[0].motion.fixed.itrs_m: must be a list of 3 numbers, got a list");
   EXPECT_EQ(complaint("- {name: x, motion: {fixed: {itrs_m: [1, 2, 3]}}}"),
@@ -162,15 +215,37 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
             "s.yaml:3:10: objects[1].name: another object has this name, got x");
 }
 
+const std::string sp3 = DMISE_SOURCE_DIR "/tests/docs/every_key/orbit.sp3";
+
+TEST(ObjectConfig, AnSp3IsTheTrajectoryOfOneOfItsSatellites) {
+  const OwnObject own = object("{sp3: " + sp3 + ", satellite: g05}");
+  EXPECT_EQ(own.motion.satellite, "G05");
+  EXPECT_EQ(own.motion.trajectory_path, sp3);
+  EXPECT_EQ(model<Trajectory>(own).segments.at(0).object_name, "G05");
+  EXPECT_EQ(complaint("- {name: x, motion: {sp3: " + sp3 + ", satellite: L99}}"),
+            sp3 + ": has no satellite L99, only G05, L71, L72");
+  EXPECT_EQ(complaint("- {name: x, motion: {sp3: " + sp3 + "}}"),
+            sp3 + ": is of several satellites, G05, L71, L72: name one");
+}
+
+std::string json_of(const std::string& text) {
+  JsonWriter writer;
+  const auto objects = read(text);
+  writer.begin_object();
+  write_objects(writer, objects.catalogues, objects.own);
+  return writer.end_object().take();
+}
+
+TEST(ObjectConfig, TheSatelliteOfAnSp3ShowsInThePhysicsDigest) {
+  const auto of = [](const std::string& satellite) {
+    return json_of("- {name: x, motion: {sp3: " + sp3 + ", satellite: " + satellite + "}}");
+  };
+  EXPECT_NE(of("G05"), of("L71"));
+  EXPECT_EQ(of("G05"), of("g05"));
+}
+
 // What changes an object's motion or attitude changes the run's digest.
 TEST(ObjectConfig, EveryChangeShowsInThePhysicsDigest) {
-  const auto json = [](const std::string& text) {
-    JsonWriter writer;
-    const auto objects = read(text);
-    writer.begin_object();
-    write_objects(writer, objects.catalogues, objects.own);
-    return writer.end_object().take();
-  };
   const std::string good =
       "- {name: x, motion: {two_body: {semi_major_axis_m: 7e6, eccentricity: 0.1, "
       "inclination_deg: 10}}, attitude: {spinning: {rate_rpm: 3}}, panel: {hinge: [0, 1, 0]}}";
@@ -182,9 +257,18 @@ TEST(ObjectConfig, EveryChangeShowsInThePhysicsDigest) {
                                    {"spinning: {rate", "spinning: {phase_deg: 1, rate"}}) {
     std::string other = good;
     other.replace(other.find(what), std::string(what).size(), with);
-    EXPECT_NE(json(good), json(other)) << with;
+    EXPECT_NE(json_of(good), json_of(other)) << with;
   }
-  EXPECT_EQ(json(good), json(good));
+  EXPECT_EQ(json_of(good), json_of(good));
+  const std::string tumbling =
+      "- {name: x, motion: {fixed: {gcrs_m: [1e7, 0, 0]}}, attitude: {tumbling: {inertia_kg_m2: "
+      "[1, "
+      "2, 2.5], rate_deg_per_s: [1, 2, 3]}}}";
+  for (const auto& [what, with] : {std::pair{"2.5", "2.6"}, {"[1, 2, 3]", "[1, 2, 4]"}}) {
+    std::string other = tumbling;
+    other.replace(other.find(what), std::string(what).size(), with);
+    EXPECT_NE(json_of(tumbling), json_of(other)) << with;
+  }
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
-#include "core/config/object_model_config.h"
+#include "core/config/objects/object_model_config.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
-#include "core/base/paths.h"
-#include "core/base/whole_file.h"
-#include "core/config/object_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/base/files/json.h"
+#include "core/base/files/paths.h"
+#include "core/base/files/whole_file.h"
+#include "core/config/objects/object_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -64,6 +64,9 @@ TEST(ObjectModels, ShippedOnesKnowTheirNames) {
   EXPECT_EQ(name_of(shipped, "IRIDIUM 106 [+]"), "iridium-next");
   EXPECT_EQ(name_of(shipped, "IRIDIUM 98"), "");
   EXPECT_EQ(name_of(shipped, "IRIDIUM 10 [-]"), "");
+  EXPECT_EQ(name_of(shipped, "SL-16 R/B"), "sl-16-rocket-body");
+  EXPECT_EQ(name_of(shipped, "SL-8 R/B"), "sl-8-rocket-body");
+  EXPECT_EQ(name_of(shipped, "SL-14 R/B"), "");
   EXPECT_EQ(name_of(shipped, "ISS (ZARYA)"), "");
   for (const auto& rule : shipped.rules()) {
     EXPECT_FALSE(rule.model->source.empty()) << rule.model->name;
@@ -98,7 +101,48 @@ TEST(ObjectModels, SayWhereAndWhy) {
   const std::string path = testing::TempDir() + "told.yaml";
   write_file_whole(path, "source: nobody\nattitude: {node: gnc}\ngeometry: {model: sphere}\n");
   EXPECT_EQ(complaint("- {catalogue: demo, models: {A: " + path + "}}"),
-            path + ":2:11: attitude: must be nadir, sun_tracking, inertial or spinning");
+            path + ":2:11: attitude: must be nadir, sun_tracking, inertial, spinning or tumbling");
+  remove_file(path);
+}
+
+TEST(ObjectModels, MayHaveSmallPartsThatGlint) {
+  const auto shipped = models("shipped");
+  const ObjectModel* oneweb = shipped.of("ONEWEB-0012", 1);
+  ASSERT_TRUE(oneweb && oneweb->glints);
+  EXPECT_GT(oneweb->glints->widest_rad, oneweb->glints->narrowest_rad);
+  EXPECT_TRUE(oneweb->glints->edges);
+  EXPECT_FALSE(shipped.of("STARLINK-1007", 1)->glints);
+  const std::string fixed = "motion: {fixed: {gcrs_m: [1e7, 0, 0]}}";
+  EXPECT_TRUE(read("- {name: x, " + fixed + ", model: oneweb}").own.at(0).glints);
+  EXPECT_FALSE(read("- {name: x, " + fixed + ", model: starlink-v1.5}").own.at(0).glints);
+}
+
+TEST(ObjectModels, SayWhatIsWrongWithGlints) {
+  const std::string path = testing::TempDir() + "glints.yaml";
+  const auto complaint_of = [&](const std::string& glints) {
+    write_file_whole(
+        path, "source: me\nattitude: nadir\ngeometry: {model: sphere}\nglints: " + glints + "\n");
+    const std::string text = complaint("- {catalogue: demo, models: {A: " + path + "}}");
+    return text.rfind(path, 0) == 0 ? text.substr(path.size()) : text;
+  };
+  EXPECT_EQ(complaint_of("{lobe_deg: [1, 4], parts_in_view: 0.1, share: [0.1, 0.2]}"), "");
+  EXPECT_EQ(complaint_of("{lobe_deg: [4, 1], parts_in_view: 0.1, share: [0.1, 0.2]}"),
+            ":4:20: glints.lobe_deg: the narrowest must not be wider than the widest");
+  EXPECT_EQ(complaint_of("{lobe_deg: [1, 4], parts_in_view: 0.1, share: [0.5, 0.5]}"),
+            ":4:55: glints.share: the lobes of all widths have 1.5 of the light; at most 1");
+  EXPECT_EQ(complaint_of("{lobe_deg: [1, 4], parts_in_view: 0, share: [0.1, 0.2]}"),
+            ":4:43: glints.parts_in_view: must be >= 0.001, got 0");
+  const auto with_edges = [&](const std::string& edges) {
+    return complaint_of(
+        "{lobe_deg: [1, 4], parts_in_view: 0.1, share: [0.1, 0.2], edges: " + edges + "}");
+  };
+  EXPECT_EQ(with_edges("{half_width_deg: 2, share: 0.01}"), "");
+  EXPECT_EQ(with_edges("{axis: [0, 0, 0], half_width_deg: 2, share: 0.01}"),
+            ":4:81: glints.edges.axis: must not be zero");
+  EXPECT_EQ(
+      with_edges("{half_width_deg: 2, share: 0.8}"),
+      ":4:55: glints.share: the lobes of all widths and edges have 1.24 of the light; at most "
+      "1");
   remove_file(path);
 }
 

@@ -1,4 +1,4 @@
-#include "core/config/object_names.h"
+#include "core/config/objects/object_names.h"
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,12 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/units.h"
-#include "core/config/camera_config.h"
-#include "core/config/optics_config.h"
-#include "core/config/sky_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/objects/sky_config.h"
+#include "core/config/sensors/camera_config.h"
+#include "core/config/sensors/optics_config.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "core/optics/projection.h"
+#include "core/optics/psf_plan.h"
 
 namespace dmise {
 namespace {
@@ -47,6 +48,34 @@ TEST(OpticsConfig, ReadsThePupilAndWhatBlurs) {
   EXPECT_EQ(o.spread.grid_columns, 3);
   EXPECT_NEAR(o.spread.field.coma_m, 40e-9, 1e-20);
   EXPECT_TRUE(o.vignetting.natural);
+}
+
+// By hand: an image at 500 km lies focal length^2 / 500 km behind that of infinity.
+TEST(OpticsConfig, TheDistanceOfFocusIsADefocusOfStars) {
+  const double f_m = read("").focal_length_m;
+  EXPECT_FALSE(std::isfinite(read("").spread.focus_distance_m));
+  const Optics o = read("focus_distance_m: 500.0e+3\n");
+  EXPECT_EQ(o.spread.focus_distance_m, 500e3);
+  EXPECT_NEAR(o.spread.defocus_m, f_m * f_m / 500e3, 1e-15);
+  const Optics both = read("psf: diffraction\ndefocus_m: -1.0e-5\nfocus_distance_m: 2.0e+5\n");
+  EXPECT_NEAR(both.spread.defocus_m, f_m * f_m / 2e5 - 1e-5, 1e-15);
+  for (const char* none : {"0", "-5", ".inf", ".nan", "near"})
+    EXPECT_NE(refusal(std::string("focus_distance_m: ") + none + "\n").find("focus_distance_m: "),
+              std::string::npos)
+        << none;
+  const auto planned = [&](const std::string& more) -> std::string {
+    try {
+      plan_psf(read(more), 0.55e-6, {}, 1.0);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(planned("focus_distance_m: 500.0e+3\n"), "");
+  EXPECT_NE(planned("focus_distance_m: 0.01\n").find("optics.focus_distance_m: its disc of"),
+            std::string::npos);
+  EXPECT_NE(planned("focus_distance_m: 500.0e+3\nmethod: deposit\n").find("optics.method: deposit"),
+            std::string::npos);
 }
 
 const std::string wide =

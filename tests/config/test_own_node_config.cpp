@@ -1,4 +1,4 @@
-#include "core/config/own_node_config.h"
+#include "core/config/objects/own_node_config.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 #include "core/config/scenario.h"
 #include "core/config/schema.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "tests/support/config_error.h"
 
 namespace dmise {
@@ -82,8 +82,7 @@ TEST(OwnNodeConfig, ProgramsNeedLeave) {
 
 // The digest of a run covers the program and those of its arguments that are files.
 TEST(OwnNodeConfig, ItsFilesAreProgramAndArguments) {
-  const auto directory =
-      std::filesystem::path(testing::TempDir()) / ("own-node-" + std::to_string(getpid()));
+  const auto directory = std::filesystem::path(testing::TempDir()) / "own-node";
   std::filesystem::create_directories(directory);
   std::ofstream(directory / "model.sh") << "exit\n";
   OwnNode node{.name = "gnc",

@@ -4,7 +4,7 @@
 
 #include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "tests/support/config_error.h"
 
 namespace dmise {
@@ -130,7 +130,7 @@ TEST_F(NodesOfObjects, ADetectorMustBeANodeThatDoesNothingElse) {
   EXPECT_THAT(complaint(fixed, "run: [sh], period_ticks: 2", "{node: finder}"),
               HasSubstr("nodes[0].period_ticks: a detector is asked for each frame: must be 1"));
   EXPECT_THAT(complaint(fixed, "run: [sh]", "on"), HasSubstr("no sensor detects by it"));
-  EXPECT_THAT(complaint(fixed, "run: [sh]", "{}"), HasSubstr("sensors[0].detection"));
+  EXPECT_THAT(complaint(fixed, "run: [sh]", "{}"), HasSubstr("no sensor detects by it"));
   EXPECT_THAT(complaint(fixed, "run: [sh]", "{nod: finder}"), HasSubstr("did you mean node?"));
   EXPECT_THAT(complaint(fixed, "run: [sh]", "perhaps"), HasSubstr("sensors[0].detection"));
 }

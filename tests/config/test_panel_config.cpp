@@ -1,12 +1,12 @@
-#include "core/config/panel_config.h"
+#include "core/config/objects/panel_config.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
-#include "core/base/whole_file.h"
-#include "core/config/object_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/base/files/json.h"
+#include "core/base/files/whole_file.h"
+#include "core/config/objects/object_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -2,20 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/places/place_effects.h"
 
 namespace dmise {
 namespace {
 
+const std::string gcvs_of_one_star = DMISE_SOURCE_DIR "/tests/docs/every_key/gcvs.txt";
 const std::string good =
     R"(simulation: {start: 2018-01-21T00:30:00Z, duration_s: 120, tick_s: 5, seed: 1}
 sensors:
@@ -29,9 +29,7 @@ sensors:
 
 class ScenarioFile : public testing::Test {
  protected:
-  std::string path = (std::filesystem::path(testing::TempDir()) /
-                      ("scenario-" + std::to_string(getpid()) + ".yaml"))
-                         .string();
+  std::string path = (std::filesystem::path(testing::TempDir()) / "scenario.yaml").string();
   void SetUp() override { setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1); }
   void TearDown() override { std::remove(path.c_str()); }
 
@@ -51,6 +49,32 @@ class ScenarioFile : public testing::Test {
     return "";
   }
 };
+
+TEST_F(ScenarioFile, StarsGoOnWhereACatalogueEnds) {
+  const auto to_v_mag = [&](const std::string& more) {
+    return load(good + "stars: {catalogue: kstars" + more + "}\n").synthetic_stars_to_v_mag;
+  };
+  EXPECT_FALSE(to_v_mag(""));
+  EXPECT_EQ(to_v_mag(", synthetic_to: limit"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(to_v_mag(", synthetic_to: 17"), 17.0);
+  EXPECT_FALSE(to_v_mag(", synthetic_to: off"));
+  EXPECT_FALSE(load(good).synthetic_stars_to_v_mag);
+  for (const char* wrong : {"22", "deep", "[1]"}) {
+    const std::string text = good + "stars: {catalogue: kstars, synthetic_to: " + wrong + "}\n";
+    const std::string message = complaint(text, "seed: 1", "seed: 2");
+    EXPECT_TRUE(message.starts_with("9:42: stars.synthetic_to: must be ")) << message;
+  }
+}
+
+TEST_F(ScenarioFile, VariableStarsAreInTheDigestAlone) {
+  const std::string stars = good + "stars: {catalogue: kstars", file = gcvs_of_one_star;
+  const Scenario with = load(stars + ", variables: " + file + "}\n"), without = load(stars + "}\n");
+  EXPECT_EQ(with.star_variables_path, file);
+  EXPECT_NE(physics_json(with), physics_json(without));
+  EXPECT_EQ(physics_json(without).find("variables"), std::string::npos);
+  EXPECT_TRUE(complaint(stars + ", variables: absent.txt}\n", "seed: 1", "seed: 2")
+                  .starts_with("9:39: stars.variables: there is no such file"));
+}
 
 TEST_F(ScenarioFile, ResolvesPresetsAndDefaults) {
   const auto scenario = load(good);

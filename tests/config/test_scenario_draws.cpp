@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -32,9 +30,7 @@ sensors:
 
 class ScenarioDrawsTest : public testing::Test {
  protected:
-  std::string path =
-      (std::filesystem::path(testing::TempDir()) / ("draws-" + std::to_string(getpid()) + ".yaml"))
-          .string();
+  std::string path = (std::filesystem::path(testing::TempDir()) / "draws.yaml").string();
   void SetUp() override { setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1); }
   void TearDown() override { std::remove(path.c_str()); }
 

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/base/text_fields.h"
-#include "core/base/text_file.h"
-#include "core/config/yaml_reader.h"
+#include "core/base/files/text_fields.h"
+#include "core/base/files/text_file.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/config/sky_config.h"
+#include "core/config/objects/sky_config.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/config/band_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/band_config.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/sky/surface_brightness.h"
@@ -19,10 +19,9 @@
 namespace dmise {
 namespace {
 
-Surroundings read(const std::string& text) {
+Surroundings read(const std::string& text, Surroundings known = {}) {
   static const Section section{"surroundings", "", surroundings_keys()};
   YamlMap map(YamlValue::parse(text, "s.yaml"), section);
-  Surroundings known;
   read_surroundings(map, known);
   map.done();
   return known;
@@ -68,6 +67,11 @@ TEST(SkyConfig, AirAndWeather) {
   EXPECT_NEAR(read("atmosphere: {extinction: 0.3}")
                   .atmosphere->extinction_mag_per_airmass.at_or_end(550 * nm),
               0.3, 1e-12);
+  // Of a site's air one key changes itself alone.
+  const auto changed = *read("atmosphere: {extinction: 0.3}", {.atmosphere = air}).atmosphere;
+  EXPECT_NEAR(changed.extinction_mag_per_airmass.at_or_end(550 * nm), 0.3, 1e-12);
+  EXPECT_EQ(changed.refraction, false);
+  EXPECT_TRUE(changed.turbulence);
   const auto weather = *read("weather: {pressure_hpa: 980, clouds: {cover: 0.4, seed: 3}}").weather;
   EXPECT_EQ(weather.air->pressure_hpa, 980);
   EXPECT_EQ(std::get<PatchyClouds>(*weather.clouds).seed, 3u);
@@ -127,8 +131,7 @@ TEST(SkyConfig, ASeeingOfAProfile) {
 
 class CurveFile : public testing::Test {
  protected:
-  std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) / ("curve-" + std::to_string(getpid()) + ".csv");
+  std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "curve.csv";
   void TearDown() override { std::filesystem::remove(path); }
   YamlValue naming(const std::string& content) {
     std::ofstream(path) << content;

@@ -1,4 +1,4 @@
-#include "core/config/trusted_directories.h"
+#include "core/config/yaml/trusted_directories.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 #include "tests/support/config_error.h"
 
 namespace dmise {
@@ -38,7 +38,7 @@ class TrustedDirectories : public testing::Test {
     return why_not_trusted(directory.string(), list_.string());
   }
 
-  const fs::path top_ = fs::canonical(testing::TempDir()) / ("trusted-" + std::to_string(getpid()));
+  const fs::path top_ = fs::canonical(testing::TempDir()) / "trusted";
   const fs::path list_ = top_ / "config/trusted-directories";
 };
 

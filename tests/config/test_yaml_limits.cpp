@@ -1,9 +1,9 @@
-#include "core/config/yaml_limits.h"
+#include "core/config/yaml/yaml_limits.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/detection/filtered_frame.h"
+#include "core/detection/pixels/filtered_frame.h"
 
 namespace dmise::test {
 

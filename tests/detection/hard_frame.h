@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/detection/detect.h"
-#include "core/detection/detection_json.h"
+#include "core/products/product_json.h"
 #include "tests/support/simulated_frame.h"
 
 // A frame of hard conditions with the streaks that are truly in it, and what a user expects of

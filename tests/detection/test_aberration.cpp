@@ -1,4 +1,4 @@
-#include "core/detection/aberration.h"
+#include "core/detection/known/aberration.h"
 
 #include <gtest/gtest.h>
 

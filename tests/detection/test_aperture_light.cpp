@@ -1,4 +1,4 @@
-#include "core/detection/aperture_light.h"
+#include "core/detection/light/aperture_light.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/detection/atmosphere.h"
+#include "core/detection/known/atmosphere.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/detection/background.h"
+#include "core/detection/pixels/background.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/detection/beamlets.h"
+#include "core/detection/source/beamlets.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/detection/beamlet_kernels.h"
-#include "core/detection/components.h"
-#include "core/detection/line_search.h"
+#include "core/detection/pixels/components.h"
+#include "core/detection/source/beamlet_kernels.h"
+#include "core/detection/source/line_search.h"
 #include "tests/detection/filtered_step.h"
 #include "tests/support/simulated_frame.h"
 

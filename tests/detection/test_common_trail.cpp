@@ -1,4 +1,4 @@
-#include "core/detection/common_trail.h"
+#include "core/detection/stars/common_trail.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/detection/components.h"
+#include "core/detection/pixels/components.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/detection/detection_json.h"
+#include "core/products/product_json.h"
 #include "core/wcs/wcs.h"
 #include "tests/support/simulated_frame.h"
 

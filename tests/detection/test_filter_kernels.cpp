@@ -1,4 +1,4 @@
-#include "core/detection/filter_kernels.h"
+#include "core/detection/pixels/filter_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "core/base/simd_level.h"
-#include "core/detection/filtered_frame.h"
+#include "core/base/numeric/simd_level.h"
+#include "core/detection/pixels/filtered_frame.h"
 #include "tests/detection/filtered_step.h"
 
 namespace dmise {

@@ -1,13 +1,13 @@
-#include "core/detection/hidden_ends.h"
+#include "core/detection/source/hidden_ends.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/detection/filtered_frame.h"
-#include "core/detection/line_profile.h"
-#include "core/detection/source_fit.h"
+#include "core/detection/pixels/filtered_frame.h"
+#include "core/detection/source/line_profile.h"
+#include "core/detection/source/source_fit.h"
 #include "tests/support/simulated_frame.h"
 
 namespace dmise {

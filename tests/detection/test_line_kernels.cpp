@@ -1,4 +1,4 @@
-#include "core/detection/line_kernels.h"
+#include "core/detection/source/line_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "core/base/simd_level.h"
-#include "core/detection/line_search.h"
+#include "core/base/numeric/simd_level.h"
+#include "core/detection/source/line_search.h"
 
 namespace dmise {
 namespace {

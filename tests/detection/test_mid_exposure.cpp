@@ -1,4 +1,4 @@
-#include "core/detection/mid_exposure.h"
+#include "core/detection/known/mid_exposure.h"
 
 #include <gtest/gtest.h>
 

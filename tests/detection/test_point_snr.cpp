@@ -1,4 +1,4 @@
-#include "core/detection/point_snr.h"
+#include "core/detection/source/point_snr.h"
 
 #include <gtest/gtest.h>
 

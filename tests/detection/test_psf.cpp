@@ -1,11 +1,11 @@
-#include "core/detection/psf.h"
+#include "core/detection/light/psf.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/detection/detect.h"
-#include "core/detection/trail_light.h"
+#include "core/detection/light/trail_light.h"
 #include "tests/support/simulated_frame.h"
 
 namespace dmise {

@@ -1,11 +1,11 @@
-#include "core/detection/residual_frame.h"
+#include "core/detection/source/residual_frame.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/detection/source_fit.h"
+#include "core/detection/source/source_fit.h"
 #include "tests/support/simulated_frame.h"
 #include "tests/support/simulated_scene.h"
 

@@ -1,11 +1,11 @@
-#include "core/detection/shown_stars.h"
+#include "core/detection/stars/shown_stars.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/detection/components.h"
+#include "core/detection/pixels/components.h"
 #include "tests/support/simulated_frame.h"
 #include "tests/support/simulated_scene.h"
 

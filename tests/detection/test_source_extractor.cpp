@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 #include "core/detection/detect.h"
 #include "core/image/fits_file.h"
 #include "tests/support/data.h"

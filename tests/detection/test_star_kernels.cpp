@@ -1,4 +1,4 @@
-#include "core/detection/star_kernels.h"
+#include "core/detection/light/star_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
-#include "core/base/simd_level.h"
-#include "core/detection/bit_mask.h"
-#include "core/detection/filtered_frame.h"
-#include "core/detection/star_image.h"
+#include "core/base/numeric/simd_level.h"
+#include "core/detection/light/star_image.h"
+#include "core/detection/pixels/bit_mask.h"
+#include "core/detection/pixels/filtered_frame.h"
 #include "tests/detection/filtered_step.h"
 
 namespace dmise {

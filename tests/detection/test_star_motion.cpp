@@ -1,4 +1,4 @@
-#include "core/detection/star_motion.h"
+#include "core/detection/known/star_motion.h"
 
 #include <gtest/gtest.h>
 

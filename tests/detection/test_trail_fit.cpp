@@ -1,4 +1,4 @@
-#include "core/detection/trail_fit.h"
+#include "core/detection/light/trail_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/detection/trail_kernels.h"
+#include "core/detection/light/trail_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/simd_level.h"
-#include "core/detection/trail_light.h"
+#include "core/base/numeric/simd_level.h"
+#include "core/detection/light/trail_light.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/detection/trail_scan.h"
+#include "core/detection/stars/trail_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/detection/trailed_stars.h"
+#include "core/detection/stars/trailed_stars.h"
 
 #include <gtest/gtest.h>
 
@@ -65,19 +65,52 @@ TEST(TrailedStars, AreFoundWithoutACatalogue) {
   EXPECT_LE(found.size(), trails.stars.size() + 2);
 }
 
-TEST(TrailedStars, LeavePointsToBeFound) {
-  Trails trails(60, 25);
-  trails.header.mount = "unknown";
-  Threads one;
-  const DetectionResult result = detect(trails.counts, trails.header, nullptr, one);
-  int seen = 0, others = 0;
-  for (const Detection& d : result.detections) {
-    bool is_point = false;
-    for (const PixelPosition& p : trails.points) is_point |= is_near(p, {d.x_px, d.y_px}, 1.0);
-    (is_point ? seen : others) += 1;
+TEST(TrailedStars, LeavePointsToBeFoundUnderAnyMount) {
+  for (const char* mount : {"unknown", "fixed"}) {
+    Trails trails(60, 25);
+    trails.header.mount = mount;
+    Threads one;
+    const DetectionResult result = detect(trails.counts, trails.header, nullptr, one);
+    int seen = 0, others = 0;
+    for (const Detection& d : result.detections) {
+      bool is_point = false;
+      for (const PixelPosition& p : trails.points) is_point |= is_near(p, {d.x_px, d.y_px}, 1.0);
+      (is_point ? seen : others) += 1;
+    }
+    EXPECT_GE(seen, 22) << mount;  // some lie on bright trails
+    EXPECT_EQ(others, 0) << mount;
   }
-  EXPECT_GE(seen, 22);  // some lie on bright trails
-  EXPECT_EQ(others, 0);
+}
+
+/// Detections in a frame of groups of stars. Each has `count` on a line along the trails, of which
+/// the distances are `apart` lengths of a trail, with light that falls to a half from one to the
+/// next.
+std::size_t found_in_groups(int count, double apart) {
+  const FrameHeader header = camera_header(size, size, focal_px, 0.0, exposure_s, true);
+  SimulatedFrame frame(header, size, size, sky_e, 7);
+  const SimulatedScene empty(header, CountImage(size, size));
+  for (int row = 0; row < 10; ++row)
+    for (int column = 0; column < 2; ++column) {
+      const PixelPosition first{100.0 + 230 * column + frame.uniform(-20, 20),
+                                40.0 + 46 * row + frame.uniform(-5, 5)};
+      const Trail trail = empty.scene.star_trail(first.x_px, first.y_px);
+      double flux_e = 30000;
+      for (int k = 0; k < count; ++k, flux_e *= 0.5) {
+        const PixelPosition at = trail.at(k * apart * trail.length_px);
+        frame.add_star(at.x_px, at.y_px, flux_e);
+      }
+    }
+  Threads one;
+  return detect(frame.expose(), header, nullptr, one).detections.size();
+}
+
+TEST(TrailedStars, ThatOverlapLeaveNoPoints) {
+  for (const double apart : {0.03, 0.06, 0.12, 0.5})
+    EXPECT_EQ(found_in_groups(2, apart), 0u) << apart;
+}
+
+TEST(TrailedStars, InRowsAreNoStreaks) {
+  for (const double apart : {0.9, 1.0, 1.1}) EXPECT_EQ(found_in_groups(3, apart), 0u) << apart;
 }
 
 // The bound of the search is in reads of pixels: it does not depend on the machine.

@@ -1,4 +1,4 @@
-#include "core/detection/turned_frame.h"
+#include "core/detection/pixels/turned_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/detector/expose.h"
+#include "core/detector/exposure/expose.h"
 #include "tests/support/detector_of.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/detector/expected_signal.h"
+#include "core/detector/exposure/expected_signal.h"
 #include "tests/support/detector_of.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 
 #include "core/detector/blooming.h"
 #include "core/detector/cosmic_rays.h"
-#include "core/detector/expose.h"
+#include "core/detector/exposure/expose.h"
 #include "core/detector/interpixel_coupling.h"
 #include "tests/support/detector_of.h"
 

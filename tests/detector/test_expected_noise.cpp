@@ -1,4 +1,4 @@
-#include "core/detector/expected_noise.h"
+#include "core/detector/exposure/expected_noise.h"
 #include "tests/support/detector_of.h"
 
 #include <gtest/gtest.h>

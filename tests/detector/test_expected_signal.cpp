@@ -1,4 +1,4 @@
-#include "core/detector/expected_signal.h"
+#include "core/detector/exposure/expected_signal.h"
 
 #include <gtest/gtest.h>
 

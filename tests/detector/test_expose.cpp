@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/detector/expose.h"
+#include "core/detector/exposure/expose.h"
 #include "core/effects/plan_facts.h"
 #include "tests/support/detector_of.h"
 

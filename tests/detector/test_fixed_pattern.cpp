@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/detector/expected_noise.h"
-#include "core/detector/expected_signal.h"
-#include "core/detector/expose.h"
+#include "core/detector/exposure/expected_noise.h"
+#include "core/detector/exposure/expected_signal.h"
+#include "core/detector/exposure/expose.h"
 #include "tests/support/detector_of.h"
 
 // What pixels and columns of a CMOS detector have of their own.

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/detector/expected_noise.h"
-#include "core/detector/expose.h"
+#include "core/detector/exposure/expected_noise.h"
+#include "core/detector/exposure/expose.h"
 #include "tests/support/detector_of.h"
 
 namespace dmise {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/detector/expose.h"
+#include "core/detector/exposure/expose.h"
 #include "tests/support/detector_of.h"
 
 // Janesick's photon transfer: variance [DN2] = mean [DN] / K + (read noise / K)^2, here with the

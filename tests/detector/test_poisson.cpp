@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/detector/poisson.h"
+#include "core/detector/noise/poisson.h"
 
 namespace dmise {
 namespace {

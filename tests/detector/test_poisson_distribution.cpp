@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/detector/poisson.h"
+#include "core/detector/noise/poisson.h"
 
 // 10^8 draws at each of many means against the probabilities by the C library's lgammal.
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 
 namespace dmise {

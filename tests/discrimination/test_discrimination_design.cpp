@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "core/config/camera_config.h"
-#include "core/config/material_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/objects/material_config.h"
+#include "core/config/sensors/camera_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
-#include "core/config/material_config.h"
+#include "core/base/numeric/rng.h"
+#include "core/config/objects/material_config.h"
 
 namespace dmise {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/discrimination/discrimination_text.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"

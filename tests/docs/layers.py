@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Holds every include line against docs/layers.toml: a directory includes only what stands in its entry, all of
 which stands above it, and nothing stands there that it does not include. No more sources see a header that is slow to
-compile, by way of others or not, than stand there.
+compile, by way of others or not, than stand there. What has one answer is said in its files alone. Directories are
+in at most 12 boxes that do not use each other in a circle, and have at most 20 pairs of files.
 
     layers.py            exits 1 and names what is wrong
     layers.py --write    writes the table of docs/architecture.md anew
@@ -10,6 +11,7 @@ import pathlib
 import re
 import sys
 import tomllib
+from graphlib import CycleError, TopologicalSorter
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LAYERS = ROOT / "docs/layers.toml"
@@ -22,6 +24,8 @@ LIBRARIES = {"zmq.": "ZeroMQ", "spdlog/": "spdlog", "CLI/": "CLI11", "fitsio": "
              "google/protobuf/": "Protocol Buffers", "dmise/v1/": "Protocol Buffers", "prometheus/": "prometheus-cpp",
              "zlib.h": "zlib", "zstd.h": "zstd", "sodium.h": "libsodium", "OpenImageIO/": "OpenImageIO",
              "nanobind/": "nanobind", "Eigen/": "Eigen", "unsupported/Eigen/": "Eigen", "boost/": "Boost"}
+MOST_BOXES = 12  # that a person can hold in mind
+MOST_PAIRS = 20  # of a header and its source in a directory
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
 
 
@@ -75,11 +79,53 @@ def faults(layers):
             yield f"docs/layers.toml: {folder} does not use {unused}"
 
 
-def table(layers):
-    rows = ["| directory | what | uses | libraries |", "|---|---|---|---|"]
+def boxes(layers):
+    """The boxes of the picture, lowest first, each with its rows."""
+    found = {}
     for layer in layers:
-        uses = " ".join(f"`{used.removeprefix('core/')}`" for used in layer["uses"] if used != "core/base")
-        rows.append(f"| `{layer['folder']}` | {layer['what']} | {uses} | {', '.join(layer.get('libraries', ()))} |")
+        found.setdefault(layer["box"], []).append(layer)
+    return found
+
+
+def used_boxes(layers):
+    """Of each box, the others that its directories use."""
+    box_of = {layer["folder"]: layer["box"] for layer in layers}
+    return {box: {box_of[used] for row in rows for used in row["uses"] if used in box_of} - {box} for box, rows in boxes(layers).items()}
+
+
+def box_faults(layers):
+    uses = used_boxes(layers)
+    if len(uses) > MOST_BOXES:
+        yield f"docs/layers.toml: {len(uses)} boxes, {MOST_BOXES} at most"
+    try:
+        TopologicalSorter(uses).prepare()
+    except CycleError as error:
+        yield f"docs/layers.toml: boxes use each other: {' -> '.join(error.args[1])}"
+    for layer in layers:
+        pairs = {path.stem for path in (ROOT / layer["folder"]).glob("*") if path.suffix in (".h", ".cpp")}
+        if len(pairs) > layer.get("pairs", MOST_PAIRS):
+            yield f"{layer['folder']}: {len(pairs)} pairs of files, {layer.get('pairs', MOST_PAIRS)} at most"
+
+
+def said_elsewhere():
+    """Lines that only the files of an `only` row may have, elsewhere in the program."""
+    for row in read("only"):
+        says = re.compile(row["says"])
+        for path in sources():
+            name = str(path.relative_to(ROOT))
+            if name in row["files"] or name.startswith("bench/"):
+                continue
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                if says.search(line):
+                    yield f"{name}:{number}: {row['what']}, for which docs/layers.toml names {', '.join(row['files'])}"
+
+
+def table(layers):
+    rows = ["| box | directories | uses |", "|---|---|---|"]
+    uses = used_boxes(layers)
+    for box, of_box in boxes(layers).items():
+        directories = "<br>".join(f"`{layer['folder']}` {layer['what']}" for layer in of_box)
+        rows.append(f"| **{box}** | {directories} | {', '.join(other for other in uses if other in uses[box])} |")
     return "\n".join(rows) + "\n"
 
 
@@ -97,7 +143,7 @@ def main():
     if sys.argv[1:] == ["--write"]:
         DOCUMENT.write_text(text)
         return 0
-    wrong = list(faults(layers))
+    wrong = [*faults(layers), *box_faults(layers), *said_elsewhere()]
     for row in read("slow"):
         if len(seeing := who_sees(row["header"])) > row["sources"]:
             wrong.append(f"{len(seeing)} sources see {row['header']}, more than the {row['sources']} of docs/layers.toml: "

@@ -7,12 +7,13 @@
 
 #include "core/effects/plan_facts.h"
 #include "core/optics/stray_light.h"
-#include "core/sky/earth_disc.h"
+#include "core/optics/thermal_optics.h"
+#include "core/sky/bodies/earth_disc.h"
+#include "core/sky/bodies/limb_airglow.h"
+#include "core/sky/bodies/limb_extinction.h"
+#include "core/sky/bodies/moon_disc.h"
+#include "core/sky/bodies/sun_disc.h"
 #include "core/sky/limb_air.h"
-#include "core/sky/limb_airglow.h"
-#include "core/sky/limb_extinction.h"
-#include "core/sky/moon_disc.h"
-#include "core/sky/sun_disc.h"
 
 namespace dmise {
 namespace {
@@ -51,6 +52,8 @@ TEST(Discs, InTheFieldMustNotBeLeftOutAndHoldWhatDisplacesThem) {
   f.stray_light_e = 5.0;
   EXPECT_DOUBLE_EQ(StrayLight::error(0, f).background_sigma, 0.5);
   EXPECT_EQ(MoonDisc::cost_s(0, f), 0.0);
+  f.thermal_optics_e = 5.0;
+  EXPECT_DOUBLE_EQ(ThermalOptics::error(0, f).background_sigma, 0.5);
 }
 
 TEST(Limb, InTheFieldItsLightIsBoundedAndItsExtinctionIsNot) {

@@ -128,7 +128,7 @@ TEST(ExportFormat, MessagesThatNeedASegmentRefuseAnEmptyRun) {
 // Reference: OWASP, CSV Injection: cells that begin with = + - @, a tab or a carriage return.
 TEST(ExportFormat, CsvHasNoFormulasForSpreadsheets) {
   RunProducts run = small_run();
-  run.directory = testing::TempDir() + "/formulas-" + std::to_string(getpid());
+  run.directory = testing::TempDir() + "/formulas";
   std::filesystem::create_directories(run.directory);
   std::ofstream(run.directory + "/detections.jsonl")
       << R"json({"sensor":"eye","frame":7,"a":"=HYPERLINK(\"http://x\")","b":"+1","c":"@SUM(1)",)json"
@@ -145,7 +145,7 @@ TEST(ExportFormat, CsvHasNoFormulasForSpreadsheets) {
 // Reference: RFC 4180 2.5 to 2.7.
 TEST(ExportFormat, CsvQuotesAndLeavesOutOtherSensors) {
   RunProducts run = small_run();
-  run.directory = testing::TempDir() + "/csv-" + std::to_string(getpid());
+  run.directory = testing::TempDir() + "/csv";
   std::filesystem::create_directories(run.directory);
   std::ofstream(run.directory + "/detections.jsonl")
       << "{\"id\":\"a,\\\"b\",\"sensor\":\"eye\",\"frame\":7,\"covariance_px2\":[1,0.5,2]}\n"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 
 namespace dmise {
 namespace {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "core/base/units.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 #include "tests/support/fusion_trial.h"
 
 namespace dmise {

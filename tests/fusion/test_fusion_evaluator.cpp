@@ -1,7 +1,6 @@
 #include "nodes/fusion/fusion_evaluator.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,10 +9,10 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/quantile.h"
+#include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/config/make_clock.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 #include "core/products/frame_report.h"
 #include "tests/support/fusion_trial.h"
 
@@ -102,7 +101,7 @@ struct TwoSites {
     return out;
   }
 
-  fs::path directory = fs::path(testing::TempDir()) / ("fusion-" + std::to_string(getpid()));
+  fs::path directory = fs::path(testing::TempDir()) / "fusion";
   Scenario scenario;
   ObjectRoster roster;
   std::optional<FusionTrial> trial;

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -59,9 +58,7 @@ class RecordedTrackerTest : public testing::Test {
            test::message_record(tasks, test::recorded(given, test::envelope_of_last(tick)));
   }
 
-  const std::string path_ =
-      (std::filesystem::temp_directory_path() / ("dmise-tracks-" + std::to_string(getpid())))
-          .string();
+  const std::string path_ = (std::filesystem::path(testing::TempDir()) / "dmise-tracks").string();
 };
 
 TEST_F(RecordedTrackerTest, SaysTheTracksAndTasksOfEachTick) {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "core/base/units.h"
-#include "core/orbit/catalogue.h"
-#include "core/orbit/catalogue_report.h"
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/catalogue.h"
+#include "core/orbit/elements/epoch.h"
+#include "core/orbit/sgp4/catalogue_report.h"
 
 namespace dmise::fuzz {
 

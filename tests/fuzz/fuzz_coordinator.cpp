@@ -4,7 +4,7 @@
 // digest of an undisturbed one.
 #include <array>
 
-#include "core/base/fold_digest.h"
+#include "core/base/files/fold_digest.h"
 #include "tests/fuzz/chunks.h"
 #include "time-master/coordinator.h"
 

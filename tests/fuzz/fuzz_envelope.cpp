@@ -1,6 +1,6 @@
 // Hostile frames for the receiver: topic, envelope, payload, arrays, each after its length. Where
 // the first byte is odd the seal is made right, so that the fuzzer gets past it.
-#include "core/base/crc32c.h"
+#include "core/base/files/crc32c.h"
 #include "nodes/wire/state_codec.h"
 #include "tests/fuzz/chunks.h"
 #include "tests/wire/examples.h"

@@ -1,10 +1,12 @@
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/orbit/object_facts.h"
-#include "core/orbit/omm.h"
+#include "core/orbit/elements/facts_import.h"
+#include "core/orbit/elements/object_facts.h"
+#include "core/orbit/elements/omm.h"
 #include "tests/fuzz/catalogue_invariants.h"
 
 using namespace dmise;
@@ -31,6 +33,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::require(sphere.radius_m >= 0 && std::isfinite(sphere.radius_m));
       fuzz::require(sphere.albedo > 0 && sphere.albedo <= 1);
     }
+    const std::string known = facts_csv(parse_object_facts(text, "fuzz"));
+    fuzz::require(facts_csv(parse_object_facts(known, "fuzz")) == known);
+    for (const SizeKind kind : {SizeKind::radius, SizeKind::rcs})
+      import_facts(text, "fuzz",
+                   {.id = "NORAD_CAT_ID",
+                    .size = "rcs_m2",
+                    .kind = kind,
+                    .unit = kind == SizeKind::rcs ? SizeUnit::dbsm : SizeUnit::mm});
   } catch (const ConfigError&) {
   }
   return 0;

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/products/product_json.h"
 #include "core/score/foreign_frames.h"
-#include "core/score/json_record.h"
-#include "core/score/run_files.h"
 #include "core/score/score.h"
 #include "core/score/score_text.h"
+#include "core/score/scored_run.h"
 
 using namespace dmise;
 
@@ -120,9 +120,8 @@ void read_lines(const std::string& text) {
       } else if (record.has("existence")) {
         track_of(record);
       } else {
-        ScoredFrame f = frame_of(record);
-        f.columns = 640, f.rows = 480;
-        input.frames.push_back(std::move(f));
+        const RunSensor sensor{.name = "x", .columns = 640, .rows = 480};
+        input.frames.push_back(frame_of(report_of(record), sensor));
       }
     } catch (const ConfigError&) {
     }

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/base/crc32c.h"
 #include "core/base/error.h"
-#include "core/sky/star_map_file.h"
+#include "core/base/files/crc32c.h"
+#include "core/sky/stars/star_map_file.h"
 
 namespace {
 

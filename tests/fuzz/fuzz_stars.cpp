@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/sky/star_file.h"
-#include "core/sky/star_map.h"
+#include "core/sky/stars/star_file.h"
+#include "core/sky/stars/star_map.h"
 #include "tests/sky/deep_file.h"
 #include "tests/sky/gaia_table.h"
 

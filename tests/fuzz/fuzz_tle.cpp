@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/orbit/element_text.h"
-#include "core/orbit/tle.h"
+#include "core/orbit/elements/element_text.h"
+#include "core/orbit/elements/tle.h"
 #include "tests/fuzz/catalogue_invariants.h"
 
 using namespace dmise;

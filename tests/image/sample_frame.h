@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/products/frame_header.h"

@@ -1,10 +1,10 @@
-#include "core/image/chart.h"
+#include "core/image/charts/chart.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/image/chart_layout.h"
+#include "core/image/charts/chart_layout.h"
 
 namespace dmise {
 namespace {

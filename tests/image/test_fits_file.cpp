@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "core/base/error.h"
+#include "core/base/files/whole_file.h"
 #include "core/base/units.h"
-#include "core/base/whole_file.h"
 #include "core/image/fits_cards.h"
 #include "core/wcs/wcs.h"
 #include "tests/image/sample_frame.h"

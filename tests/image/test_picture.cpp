@@ -1,11 +1,11 @@
-#include "core/image/picture.h"
+#include "core/image/charts/picture.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/image/drawing.h"
-#include "core/image/font.h"
-#include "core/image/marked_picture.h"
+#include "core/image/charts/drawing.h"
+#include "core/image/charts/font.h"
+#include "core/image/charts/marked_picture.h"
 #include "tests/image/sample_frame.h"
 
 namespace dmise {

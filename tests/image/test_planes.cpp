@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "core/image/plane_file.h"

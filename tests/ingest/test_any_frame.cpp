@@ -11,7 +11,7 @@
 #include <random>
 
 #include "core/base/error.h"
-#include "core/detection/star_motion.h"
+#include "core/detection/known/star_motion.h"
 #include "tests/image/sample_frame.h"
 #include "tests/ingest/foreign_scene.h"
 

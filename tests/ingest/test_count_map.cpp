@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/base/parallel.h"
-#include "core/detection/background.h"
+#include "core/detection/pixels/background.h"
 
 namespace dmise {
 namespace {

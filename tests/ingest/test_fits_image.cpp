@@ -1,4 +1,4 @@
-#include "core/ingest/fits_image.h"
+#include "core/image/fits_image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,11 +7,11 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/fits_guard.h"
-#include "core/base/text_file.h"
+#include "core/base/files/fits_guard.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
+#include "core/image/fits_image.h"
 #include "core/ingest/any_frame.h"
-#include "core/ingest/fits_image.h"
 #include "core/ingest/standard_wcs.h"
 #include "core/wcs/wcs.h"
 #include "tests/support/command.h"

@@ -1,5 +1,5 @@
-#include "launch/dataset_directory.h"
-#include "launch/dataset_growth.h"
+#include "launch/dataset/dataset_directory.h"
+#include "launch/dataset/dataset_growth.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "launch/file_digest.h"
+#include "launch/run/file_digest.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "core/base/file_version.h"
+#include "core/base/files/file_version.h"
 
 namespace dmise {
 namespace {
@@ -25,7 +25,7 @@ struct FileDigest : testing::Test {
     while (!file_version(path_)) std::this_thread::yield();
   }
 
-  const std::string path_ = testing::TempDir() + "digest-" + std::to_string(getpid());
+  const std::string path_ = testing::TempDir() + "digest";
 };
 
 TEST_F(FileDigest, IsOfWhatTheFileHolds) {

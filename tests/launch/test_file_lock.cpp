@@ -1,4 +1,4 @@
-#include "launch/file_lock.h"
+#include "launch/process/file_lock.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
 // Where the processes of a launched run serve their figures.
-#include "launch/metrics_ports.h"
+#include "launch/process/metrics_ports.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 
 namespace dmise {
 namespace {

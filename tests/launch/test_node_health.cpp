@@ -1,5 +1,5 @@
 // What `dmise health` makes of the time-master's answer.
-#include "launch/node_health.h"
+#include "launch/process/node_health.h"
 
 #include <gtest/gtest.h>
 

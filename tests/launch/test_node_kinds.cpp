@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -12,7 +10,7 @@
 
 #include "core/config/make_clock.h"
 #include "core/config/node_names.h"
-#include "launch/node_makers.h"
+#include "launch/run/node_makers.h"
 
 namespace dmise {
 namespace {
@@ -45,7 +43,7 @@ struct SmallRun {
   }
   ~SmallRun() { fs::remove_all(directory); }
 
-  fs::path directory = fs::path(testing::TempDir()) / ("kinds-" + std::to_string(getpid()));
+  fs::path directory = fs::path(testing::TempDir()) / "kinds";
   Scenario scenario;
 };
 

@@ -1,4 +1,4 @@
-#include "launch/own_address.h"
+#include "launch/process/own_address.h"
 
 #include <gtest/gtest.h>
 

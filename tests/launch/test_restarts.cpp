@@ -1,7 +1,6 @@
-#include "launch/restarts.h"
+#include "launch/process/restarts.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <thread>
@@ -37,7 +36,7 @@ class RestartsTest : public testing::Test {
     std::filesystem::remove(mark + ".log");
   }
 
-  const std::string mark = testing::TempDir() + "/restarts-" + std::to_string(getpid());
+  const std::string mark = testing::TempDir() + "/restarts";
   NetworkConfig network{.on_silent_node = OnSilentNode::restart, .join_within_s = 60.0};
   Supervisor processes;
   Restarts restarts{processes, network};

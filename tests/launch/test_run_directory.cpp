@@ -1,4 +1,4 @@
-#include "launch/run_directory.h"
+#include "launch/run/run_directory.h"
 
 #include <gtest/gtest.h>
 
@@ -151,6 +151,13 @@ TEST_F(RunDirectories, OnlyACompleteRunIsComplete) {
   }
   write("", "run.json", R"({"status":"complete","digest":"digest"})");
   EXPECT_EQ(run.content(), RunDirectory::Content::same_run_complete);
+  write("", "run.json", R"({"status":"complete","digest":"another"})");
+  EXPECT_EQ(run.content(), RunDirectory::Content::another_run);
+  for (const char* damaged :
+       {"", "[1]", R"({"status":"complete","digest":"dig)", R"({"digest":1})"}) {
+    write("", "run.json", damaged);
+    EXPECT_EQ(run.content(), RunDirectory::Content::unreadable) << damaged;
+  }
 }
 
 }  // namespace

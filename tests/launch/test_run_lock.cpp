@@ -1,4 +1,4 @@
-#include "launch/run_lock.h"
+#include "launch/process/run_lock.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

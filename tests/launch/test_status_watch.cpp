@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "launch/status_watch.h"
+#include "launch/process/status_watch.h"
 
 namespace dmise {
 namespace {

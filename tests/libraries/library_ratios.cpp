@@ -23,12 +23,12 @@
 #include <string>
 #include <vector>
 
-#include "core/base/crc32c.h"
 #include "core/base/error.h"
-#include "core/base/json.h"
-#include "core/base/least_squares.h"
-#include "core/base/rng.h"
-#include "core/detector/poisson.h"
+#include "core/base/files/crc32c.h"
+#include "core/base/files/json.h"
+#include "core/base/numeric/least_squares.h"
+#include "core/base/numeric/rng.h"
+#include "core/detector/noise/poisson.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "tests/image/sample_frame.h"

@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/config/material_config.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/objects/material_config.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "tests/materials/brdf_value.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 
 namespace dmise {
 namespace {

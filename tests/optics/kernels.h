@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/optics/otf.h"
-#include "core/optics/psf_kernel.h"
+#include "core/optics/waves/otf.h"
+#include "core/optics/waves/psf_kernel.h"
 
 // Kernels of known optics, which tests compare others with.
 namespace dmise {

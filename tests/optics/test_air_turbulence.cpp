@@ -1,4 +1,4 @@
-#include "core/optics/air_turbulence.h"
+#include "core/optics/waves/air_turbulence.h"
 
 #include <gtest/gtest.h>
 

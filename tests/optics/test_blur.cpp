@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/optics/blur_grid.h"
-#include "core/optics/direct_blur.h"
+#include "core/optics/blur/blur_grid.h"
+#include "core/optics/blur/direct_blur.h"
 #include "core/optics/projection.h"
 #include "core/optics/psf_model.h"
 

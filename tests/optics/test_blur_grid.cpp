@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
-#include "core/optics/blur_grid.h"
-#include "core/optics/deposit.h"
+#include "core/optics/blur/blur_grid.h"
+#include "core/optics/blur/deposit.h"
 #include "tests/optics/kernels.h"
 
 namespace dmise {

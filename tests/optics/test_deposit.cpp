@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
-#include "core/optics/deposit.h"
+#include "core/optics/blur/deposit.h"
 #include "core/optics/projection.h"
 
 namespace dmise {

@@ -6,8 +6,8 @@
 #include <complex>
 #include <vector>
 
-#include "core/base/rng.h"
-#include "core/optics/fft.h"
+#include "core/base/numeric/rng.h"
+#include "core/optics/waves/fft.h"
 
 namespace dmise {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/optics/blur_grid.h"
+#include "core/optics/blur/blur_grid.h"
 #include "core/optics/projection.h"
 #include "core/optics/psf_model.h"
 

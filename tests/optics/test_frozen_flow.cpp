@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/optics/frozen_flow.h"
+#include "core/optics/waves/frozen_flow.h"
 
 namespace dmise {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/optics/blur_grid.h"
+#include "core/optics/blur/blur_grid.h"
 #include "core/optics/psf_model.h"
 
 // GalSim's tables, made by tests/reference/galsim_psf.py.

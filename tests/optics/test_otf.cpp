@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/optics/otf.h"
+#include "core/optics/waves/otf.h"
 
 namespace dmise {
 namespace {

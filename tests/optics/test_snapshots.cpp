@@ -1,4 +1,4 @@
-#include "core/optics/snapshots.h"
+#include "core/optics/blur/snapshots.h"
 
 #include <gtest/gtest.h>
 

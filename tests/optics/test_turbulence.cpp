@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "core/base/units.h"
-#include "core/optics/pupil.h"
+#include "core/optics/waves/pupil.h"
 #include "tests/optics/kernels.h"
 
 namespace dmise {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/units.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 
 namespace dmise::test {
 

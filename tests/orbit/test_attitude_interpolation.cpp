@@ -55,6 +55,21 @@ TEST(AttitudeInterpolation, NadirIsGoodToMicroarcsecondsAndFallsWithTheFourthPow
   EXPECT_LT(worst_rad(SunYawAttitude{}, 10.0), 1e-3 * arcsec);
 }
 
+// Of a tumbling rocket body the error falls with the fourth power of the tick, and is what
+// `worst_interpolation_rad` says.
+TEST(AttitudeInterpolation, ATumblingBodyIsMetToTheFourthPowerOfTheTick) {
+  const TumblingAttitude tumbling{rotation_of<Gcrs, Body>({0.5, 0.1, -0.7, 0.2}),
+                                  TorqueFreeRotation({1900, 7000, 8000}, {0.02, 0.1, -0.05})};
+  const double at_1_s = worst_interpolation_rad(tumbling, 1.0),
+               at_4_s = worst_interpolation_rad(tumbling, 4.0);
+  EXPECT_LT(at_1_s, 2e-6);
+  EXPECT_NEAR(std::log2(at_4_s / at_1_s) / 2, 4.0, 0.2);
+  EXPECT_LE(worst_rad(tumbling, 4.0), 1.05 * at_4_s);
+  EXPECT_GT(worst_rad(tumbling, 4.0), 0.1 * at_4_s);
+  const TumblingAttitude steady{{}, TorqueFreeRotation({1, 1, 1}, {0.1, 20.0, -3.0})};
+  EXPECT_LT(worst_interpolation_rad(steady, 10.0), 1e-11);
+}
+
 TEST(AttitudeInterpolation, InertialStaysToTheBit) {
   const InertialAttitude inertial{rotation_of<Gcrs, Body>({0.6, 0.0, 0.8, 0.0})};
   const auto s = state(inertial, 5.0);

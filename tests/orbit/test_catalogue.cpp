@@ -1,13 +1,13 @@
-#include "core/orbit/catalogue.h"
+#include "core/orbit/elements/catalogue.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "core/base/digest.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/digest.h"
+#include "core/base/files/text_file.h"
 #include "tests/support/data.h"
 
 namespace dmise {

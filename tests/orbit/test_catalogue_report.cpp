@@ -1,9 +1,9 @@
-#include "core/orbit/catalogue_report.h"
+#include "core/orbit/sgp4/catalogue_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/epoch.h"
 #include "tests/support/data.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/units.h"
-#include "core/orbit/cone_test.h"
+#include "core/orbit/cones/cone_test.h"
 #include "tests/support/simd.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/epoch.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/orbit/catalogue.h"
 #include "core/orbit/catalogue_interpolation.h"
+#include "core/orbit/elements/catalogue.h"
 #include "core/orbit/interpolation_error.h"
 #include "core/orbit/two_body.h"
 #include "tests/support/data.h"

@@ -1,4 +1,4 @@
-#include "core/orbit/object_facts.h"
+#include "core/orbit/elements/object_facts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-#include "core/orbit/omm.h"
+#include "core/orbit/elements/omm.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/orbit/tle.h"
+#include "core/orbit/elements/tle.h"
 #include "tests/support/data.h"
 
 namespace dmise {

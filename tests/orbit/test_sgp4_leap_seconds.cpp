@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/orbit/epoch.h"
+#include "core/orbit/elements/epoch.h"
 #include "tests/orbit/sgp4_orbits.h"
 
 namespace dmise {

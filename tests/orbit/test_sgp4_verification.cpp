@@ -5,8 +5,8 @@
 #include <map>
 #include <sstream>
 
-#include "core/base/text_file.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/base/files/text_file.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "tests/support/data.h"
 #include "tests/support/simd.h"
 #include "tests/support/tle.h"

@@ -1,4 +1,4 @@
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/orbit/catalogue.h"
-#include "core/orbit/catalogue_report.h"
-#include "core/orbit/element_text.h"
+#include "core/orbit/elements/catalogue.h"
+#include "core/orbit/elements/element_text.h"
+#include "core/orbit/sgp4/catalogue_report.h"
 #include "tests/support/data.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "core/orbit/tle.h"
+#include "core/orbit/elements/tle.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -14,8 +14,7 @@ namespace dmise::test {
 /// A directory of its own for a scenario and the files that it names.
 class ScenarioDirectory : public testing::Test {
  protected:
-  std::filesystem::path directory =
-      std::filesystem::path(testing::TempDir()) / ("objects-" + std::to_string(getpid()));
+  std::filesystem::path directory = std::filesystem::path(testing::TempDir()) / "objects";
 
   void SetUp() override {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "core/propagation/object_states.h"
-#include "sensors/pipeline/objects_in_field.h"
-#include "sensors/pipeline/view.h"
+#include "sensors/objects/objects_in_field.h"
+#include "sensors/scene/view.h"
 #include "tests/orbit_node/scenario_directory.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/data.h"

@@ -53,6 +53,51 @@ TEST_F(ObjectPopulationTest, CataloguesComeFirstThenElementsThenTheOtherModels) 
   EXPECT_EQ(p.attitudes[0].object, 2u);
 }
 
+TEST_F(ObjectPopulationTest, AConstellationIsASourceLikeACatalogue) {
+  const auto p = population(
+      "  - {walker: {total: 6, planes: 3, height_m: 550.0e+3, inclination_deg: 53}, name: ring, "
+      "radius_m: 2, models: {\"ring-2-*\": oneweb}}\n"
+      "  - {catalogue: goes.tle}\n"
+      "  - {name: mast, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n");
+  ASSERT_EQ(p.roster.objects.size(), 8u);
+  EXPECT_EQ(p.elements.size(), 7u);
+  EXPECT_EQ(p.roster.objects[0].name, "ring-1-1");
+  EXPECT_EQ(p.roster.objects[0].catalogue_number, first_own_number + 1);
+  EXPECT_EQ(p.roster.objects[0].sphere.radius_m, 2.0);
+  EXPECT_EQ(p.roster.objects[5].name, "ring-3-2");
+  EXPECT_EQ(p.roster.objects[7].catalogue_number, first_own_number);  // of the mast
+  EXPECT_EQ(p.attitudes.size(), 2u);                                  // of the model
+  EXPECT_EQ(complaint([&] {
+              population(
+                  "  - {walker: {total: 1, planes: 1, height_m: 550.0e+3, inclination_deg: 53}}\n"
+                  "  - {name: walker-1-1, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n");
+            }),
+            "scenario.yaml:4:12: objects[1].name: a catalogue's object has this name, got "
+            "walker-1-1 (give it the number 990000002 to take its place)");
+}
+
+TEST_F(ObjectPopulationTest, FragmentsAreSpheresOfTheirOwnSize) {
+  const auto p = population(
+      "  - {breakup: {parent: mother, kind: explosion, mass_kg: 900, least_length_m: 0.1}, name: "
+      "b, "
+      "albedo: 0.3}\n"
+      "  - {name: mother, motion: {two_body: {semi_major_axis_m: 7178137, eccentricity: 0, "
+      "inclination_deg: 98.6}}}\n");
+  ASSERT_GT(p.elements.size(), 200u);
+  ASSERT_EQ(p.roster.objects.size(), p.elements.size() + 1);
+  const auto& first = p.roster.objects.front();
+  const auto& last = p.roster.objects[p.elements.size() - 1];
+  EXPECT_EQ(first.name, "b-001");
+  EXPECT_EQ(first.catalogue_number, first_own_number + 1);
+  EXPECT_NEAR(first.sphere.albedo, 0.3, 1e-12);
+  EXPECT_GT(first.sphere.radius_m, 5 * last.sphere.radius_m);
+  // The area of 0.1 m is 0.556945 * 0.1^2.0047 = 0.00551 m^2.
+  EXPECT_NEAR(last.sphere.radius_m, 0.0419, 0.001);
+  ASSERT_FALSE(p.notes.empty());
+  EXPECT_THAT(p.notes[0], HasSubstr("b: "));
+  EXPECT_THAT(p.notes[0], HasSubstr(" fragments of 0.1 m to "));
+}
+
 // A model gives an object of a catalogue attitude and panel, here and in a sensor that knows the
 // roster alone.
 TEST_F(ObjectPopulationTest, AModelTurnsTheObjectsThatItNames) {

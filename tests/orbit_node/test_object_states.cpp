@@ -6,7 +6,7 @@
 
 #include "core/base/units.h"
 #include "orbit-node/orbit_actor.h"
-#include "sensors/pipeline/world.h"
+#include "sensors/scene/world.h"
 #include "tests/orbit_node/scenario_directory.h"
 
 namespace dmise {

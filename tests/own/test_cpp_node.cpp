@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -11,11 +10,11 @@
 
 #include "clients/cpp/node.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/orbit/motion.h"
+#include "core/propagation/environment_source.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/own/own_program.h"
 #include "nodes/runtime/process/spawn.h"
 #include "nodes/runtime/transport/socket.h"
@@ -103,8 +102,7 @@ class CppNode : public testing::Test {
   std::string why_step_fails(const std::string& fault) const;
 
   const std::string directory_ =
-      (std::filesystem::temp_directory_path() / ("dmise-cpp-node-" + std::to_string(getpid())))
-          .string();
+      (std::filesystem::path(testing::TempDir()) / "dmise-cpp-node").string();
   const std::string log_ = directory_ + "/log";
 };
 

@@ -1,7 +1,6 @@
 #include "nodes/own/input_journal.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -26,8 +25,7 @@ class InputJournalTest : public testing::Test {
   }
 
   const std::string directory_ =
-      (std::filesystem::temp_directory_path() / ("dmise-inputs-" + std::to_string(getpid())))
-          .string();
+      (std::filesystem::path(testing::TempDir()) / "dmise-inputs").string();
   const std::string path_ = input_journal_path(directory_, "gnc");
 };
 

@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/propagation/environment_source.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/own/own_function.h"
 
 namespace dmise {

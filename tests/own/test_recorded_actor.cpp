@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -34,8 +33,7 @@ class RecordedActorTest : public testing::Test {
   }
 
   const std::string path_ =
-      (std::filesystem::temp_directory_path() / ("dmise-recording-" + std::to_string(getpid())))
-          .string();
+      (std::filesystem::path(testing::TempDir()) / "dmise-recording").string();
 };
 
 TEST_F(RecordedActorTest, SaysTheStatesOfAPlainOrPackedRecording) {

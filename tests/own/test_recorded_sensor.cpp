@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -62,8 +61,7 @@ class RecordedSensorTest : public testing::Test {
   const Scenario scenario_ = test::sample_scenario();
   const std::string sensor_ = "eye", digest_ = test::sample_digest;
   const std::string path_ =
-      (std::filesystem::temp_directory_path() / ("dmise-detections-" + std::to_string(getpid())))
-          .string();
+      (std::filesystem::path(testing::TempDir()) / "dmise-detections").string();
 };
 
 TEST_F(RecordedSensorTest, FindsInEachFrameWhatWasFoundInIt) {

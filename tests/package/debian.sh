@@ -50,7 +50,7 @@ prove() {
 }
 
 package_proof() {
-  echo "$proofs/package-$(digest_of_files 'launch/(package|stack|models|materials|cameras|sites)/.*|tests/package/.*|core/base/module.cpp|core/config/search_path.cpp').proof"
+  echo "$proofs/package-$(digest_of_files 'launch/(package|stack|models|materials|cameras|sites)/.*|tests/package/.*|core/base/module.cpp|core/config/yaml/search_path.cpp').proof"
 }
 
 prove_in_bare_root "two minutes" package_proof

@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 #include "tests/support/command.h"
 #include "tests/support/data.h"
 

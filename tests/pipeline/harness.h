@@ -1,6 +1,5 @@
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,10 +11,11 @@
 #include "core/config/make_clock.h"
 #include "core/config/scenario.h"
 #include "core/optics/projection.h"
+#include "core/sky/variables/variable_stars.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
-#include "sensors/pipeline/frame_pipeline.h"
-#include "sensors/pipeline/view.h"
+#include "sensors/frame/frame_pipeline.h"
+#include "sensors/scene/view.h"
 
 namespace dmise::test {
 
@@ -23,18 +23,20 @@ namespace dmise::test {
 class Stage {
  public:
   explicit Stage(const std::string& yaml, const std::string& stars_csv = "",
-                 const std::string& elements = "", int thread_count = 1)
+                 const std::string& elements = "", int thread_count = 1,
+                 const std::string& variables = "")
       : threads(thread_count) {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
-    directory = std::filesystem::path(testing::TempDir()) /
-                ("stage-" + std::to_string(getpid()) + "-" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name());
+    directory =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("stage-") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(directory);
     // Tests of physics are of all effects, unless they are about accuracy.
     const bool planned = yaml.find("accuracy:") != std::string::npos;
     write("scenario.yaml", planned ? yaml : yaml + "\naccuracy: off\n");
     write("stars.csv", stars_csv);
     write("objects.tle", elements);
+    if (!variables.empty()) write("gcvs.txt", variables);
     scenario = load_scenario((directory / "scenario.yaml").string());
     world = World(scenario.interpolation, scenario.last_tick());
     const Clock clock = make_clock(scenario);
@@ -46,6 +48,8 @@ class Stage {
     }
     if (!scenario.star_catalogue_path.empty())
       stars = std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path));
+    if (!scenario.star_variables_path.empty())
+      stars = with_variable_stars(stars, scenario.star_variables_path);
   }
   ~Stage() { std::filesystem::remove_all(directory); }
 

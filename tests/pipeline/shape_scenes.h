@@ -59,20 +59,24 @@ struct ShapeScene {
   std::string optics =
       "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, focal_length_m: 1, aperture_m: 0.02}";
   std::string effects = "sky: off, ";
-  std::string more;  // keys of the scenario
+  std::string range_defocus = "off";  // cameras are focused on what is before them
+  std::string more;                   // keys of the scenario
+  int seed = 1;
   double gain_e_per_dn = 1.0;
   double exposure_s = 0.5;
 };
 
 inline std::string text_of(const ShapeScene& scene) {
-  return "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 10, tick_s: 5}\n" + scene.more +
+  return "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 10, tick_s: 5, seed: " +
+         std::to_string(scene.seed) + "}\n" + scene.more +
          "objects:\n  - name: platform\n    motion: {fixed: {gcrs_m: [42000000, 1000000, "
          "2000000]}}\n" +
          scene.objects +
          "sensors:\n  - name: eye\n    platform: platform\n    pointing: " + scene.pointing +
          "\n    exposure_s: " + std::to_string(scene.exposure_s) +
          "\n    cadence_s: 5\n    sky: space\n    effects: {" + scene.effects +
-         "photon_noise: off, read_noise: off, dark_current: off, annual_aberration: off}\n    "
+         "range_defocus: " + scene.range_defocus +
+         ", photon_noise: off, read_noise: off, dark_current: off, annual_aberration: off}\n    "
          "camera:\n      optics: " +
          scene.optics + "\n      detector: {full_well_e: 1.0e+9, gain_e_per_dn: " +
          std::to_string(scene.gain_e_per_dn) +

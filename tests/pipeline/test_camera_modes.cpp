@@ -2,9 +2,9 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/config/pointing_config.h"
-#include "core/config/yaml_reader.h"
-#include "sensors/pipeline/sensor_evaluator.h"
+#include "core/config/sensors/pointing_config.h"
+#include "core/config/yaml/yaml_reader.h"
+#include "sensors/frame/sensor_evaluator.h"
 #include "tests/pipeline/harness.h"
 
 // A star or an object that stands, in mid exposure, where a camera of each mode must look by closed

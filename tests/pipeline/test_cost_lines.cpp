@@ -1,11 +1,11 @@
 // Lines of cost.jsonl: one for each of the first frames, and then for ever more frames each.
-#include "sensors/pipeline/cost_lines.h"
+#include "sensors/frame/cost_lines.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
-#include "core/config/effect_list.h"
+#include "core/config/sensors/effect_list.h"
 
 namespace dmise {
 namespace {

@@ -1,7 +1,7 @@
 #include "core/optics/projection.h"
-#include "core/sky/shadow.h"
+#include "core/sky/bodies/shadow.h"
 #include "core/wcs/wcs.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/scene/throughput.h"
 #include "tests/pipeline/shape_scenes.h"
 
 // Edges that an object crosses while the shutter is open: of the Earth's shadow, of the horizon, of

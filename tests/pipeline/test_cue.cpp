@@ -3,9 +3,9 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/products/frame_report.h"
-#include "sensors/pipeline/cue_journal.h"
-#include "sensors/pipeline/cue_path.h"
-#include "sensors/pipeline/sensor_evaluator.h"
+#include "sensors/frame/cue_journal.h"
+#include "sensors/frame/sensor_evaluator.h"
+#include "sensors/scene/cue_path.h"
 #include "tests/pipeline/harness.h"
 
 // A sensor that is cued follows the predicted path of its task, and makes no other exposure.

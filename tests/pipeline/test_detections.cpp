@@ -18,8 +18,7 @@ const std::string evening = "2018-01-21T01:05:00Z";
 std::string camera_file(
     const std::string& psf = "psf_fwhm_px: 1.6", const std::string& blooming = "false",
     const std::string& band = "{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}") {
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    ("telescope-0.4m-" + std::to_string(getpid()) + ".yaml");
+  const auto path = std::filesystem::path(testing::TempDir()) / "telescope-0.4m.yaml";
   std::ofstream(path)
       << "name: telescope-0.4m\n"
          "optics: {columns: 512, rows: 512, pixel_pitch_m: 13.5e-6, "
@@ -278,8 +277,7 @@ double nees_of_ends(const Detection& d, const Truth& truth, const Wcs& wcs) {
 
 /// Fixed to the ground, 33 deg across: 250 arcsec a pixel.
 std::string wide_camera() {
-  const auto path =
-      std::filesystem::path(testing::TempDir()) / ("wide-" + std::to_string(getpid()) + ".yaml");
+  const auto path = std::filesystem::path(testing::TempDir()) / "wide.yaml";
   std::ofstream(path) << "name: wide\noptics: {columns: 480, rows: 480, pixel_pitch_m: 10.8e-6, "
                          "focal_length_m: 0.009, aperture_m: 0.004, psf_fwhm_px: 1.7}\n"
                          "detector: {quantum_efficiency: 0.6, read_noise_e: 8, full_well_e: "

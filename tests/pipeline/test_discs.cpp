@@ -3,10 +3,10 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/earth_disc.h"
-#include "core/sky/moon_disc.h"
-#include "core/sky/sun_disc.h"
-#include "sensors/pipeline/bodies_in_field.h"
+#include "core/sky/bodies/earth_disc.h"
+#include "core/sky/bodies/moon_disc.h"
+#include "core/sky/bodies/sun_disc.h"
+#include "sensors/scene/bodies_in_field.h"
 #include "tests/pipeline/body_scenes.h"
 
 // Discs of Sun, Moon and Earth in frames.

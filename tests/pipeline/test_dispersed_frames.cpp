@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "core/base/units.h"
-#include "core/sky/dispersion.h"
+#include "core/sky/air/dispersion.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise {
@@ -10,8 +10,7 @@ namespace {
 
 /// Two lines of equal width in one band, or one of them.
 std::string band_file(const std::string& name, const std::string& rows) {
-  const auto path =
-      std::filesystem::path(testing::TempDir()) / (name + "-" + std::to_string(getpid()) + ".csv");
+  const auto path = std::filesystem::path(testing::TempDir()) / (name + ".csv");
   std::ofstream(path) << "wavelength_nm,transmission\n" << rows;
   return path.string();
 }

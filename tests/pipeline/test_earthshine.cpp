@@ -1,7 +1,7 @@
 #include "core/facets/earthshine.h"
 
 #include "core/facets/earthshine.h"
-#include "core/sky/shadow.h"
+#include "core/sky/bodies/shadow.h"
 #include "tests/pipeline/shape_scenes.h"
 
 namespace dmise::test {

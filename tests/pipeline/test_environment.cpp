@@ -2,12 +2,12 @@
 
 #include <cmath>
 
+#include "core/base/files/user_directories.h"
 #include "core/base/units.h"
-#include "core/base/user_directories.h"
-#include "core/sky/place_effects.h"
-#include "core/sky/star_cache.h"
-#include "core/sky/sun_moon.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "core/sky/places/place_effects.h"
+#include "core/sky/places/sun_moon.h"
+#include "core/sky/stars/star_cache.h"
+#include "sensors/frame/make_sensor.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/directions.h"
 

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/files/json_record.h"
 #include "core/base/units.h"
-#include "core/detection/detection_json.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "core/products/frame_report.h"
-#include "core/score/json_record.h"
-#include "sensors/pipeline/bodies_in_field.h"
-#include "sensors/pipeline/exclusion.h"
+#include "core/products/product_json.h"
+#include "sensors/scene/bodies_in_field.h"
+#include "sensors/scene/exclusion.h"
 #include "tests/pipeline/body_scenes.h"
 #include "tests/support/detect_frame.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "sensors/pipeline/exposure_planner.h"
+#include "sensors/planning/exposure_planner.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {

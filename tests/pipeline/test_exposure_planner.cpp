@@ -1,15 +1,15 @@
-#include "sensors/pipeline/exposure_planner.h"
+#include "sensors/planning/exposure_planner.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "core/base/error.h"
-#include "core/config/effect_list.h"
+#include "core/config/sensors/effect_list.h"
 #include "core/effects/frame_effects.h"
-#include "core/optics/air_turbulence.h"
-#include "core/sky/air_effects.h"
-#include "core/sky/place_effects.h"
+#include "core/optics/waves/air_turbulence.h"
+#include "core/sky/air/air_effects.h"
+#include "core/sky/places/place_effects.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {
@@ -120,7 +120,8 @@ TEST(ExposurePlanner, InDaylightThereAreNoStars) {
   const FrameProducts day =
       Scene{.start = "2018-01-21T17:00:00Z", .exposure_s = 0.01, .star_v_mag = "12"}.frame();
   EXPECT_FALSE(runs(day, StarBackground::facts));
-  EXPECT_TRUE(runs(day, Twilight::facts));
+  EXPECT_TRUE(runs(day, Daylight::facts));
+  EXPECT_FALSE(runs(day, Twilight::facts));
   EXPECT_TRUE(runs(Scene{}.frame(), StarBackground::facts));
 }
 

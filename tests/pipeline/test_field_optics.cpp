@@ -4,7 +4,7 @@
 #include "core/image/fits_cards.h"
 #include "core/optics/field_blur.h"
 #include "core/optics/projection.h"
-#include "sensors/pipeline/optics_stage.h"
+#include "sensors/scene/optics_stage.h"
 #include "tests/pipeline/harness.h"
 
 // Frames of cameras with tables over the field and a focus that drifts.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/config/pointing_config.h"
+#include "core/config/sensors/pointing_config.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "tests/pipeline/harness.h"

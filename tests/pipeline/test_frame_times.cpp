@@ -1,4 +1,4 @@
-#include "sensors/pipeline/frame_times.h"
+#include "sensors/scene/frame_times.h"
 
 #include <gtest/gtest.h>
 

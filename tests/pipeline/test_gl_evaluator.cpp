@@ -1,4 +1,4 @@
-#include "sensors/pipeline/gl_evaluator.h"
+#include "sensors/scene/gl_evaluator.h"
 
 #include <cmath>
 #include <numeric>
@@ -13,7 +13,8 @@ namespace {
 
 /// Nothing but the light of sources.
 const std::string effects =
-    "effects: {sky: off, photon_noise: off, dark_current: off, read_noise: off, full_well: off,"
+    "effects: {sky: off, planets: off, photon_noise: off, dark_current: off, read_noise: off, "
+    "full_well: off,"
     " quantisation: off, scintillation: off, shadow: off}\n";
 
 const std::string detector =

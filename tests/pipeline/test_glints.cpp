@@ -1,14 +1,14 @@
 // Light of objects that turn, beside the mean of their light at 20,000 instants.
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <set>
 
-#include "sensors/pipeline/object_shapes.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/objects/object_shapes.h"
+#include "sensors/scene/throughput.h"
 #include "tests/pipeline/shape_scenes.h"
 
 namespace dmise::test {
@@ -25,7 +25,7 @@ double turn_deg(const Stage& stage, const std::string& name) {
 /// `period_s` of the exposure, with which it repeats itself.
 double light_over_mean(Stage& stage, const std::string& name, double period_s) {
   const auto& sensor = stage.scenario.sensors.at(0);
-  const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
+  const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band, sensor.effects);
   const FrameTimes times = frame_times(sensor, 1);
   const View view(sensor, times, stage.world);
   const std::size_t object = object_index(stage.world.roster(), name, "test");
@@ -60,7 +60,7 @@ TEST(Glints, AGlintShorterThanAPoseIsNotLost) {
 
 /// A file of this process, above the directories of its scenes.
 std::string mirror_file(const std::string& ending, const std::string& directory) {
-  return directory + "/mirror-" + std::to_string(getpid()) + ending;
+  return directory + "/mirror" + ending;
 }
 
 struct Mirror {
@@ -126,6 +126,56 @@ TEST(Glints, AGlintBeforeTheObjectComesToRestIsNotLost) {
     EXPECT_LE(turn_deg(stage, "mirror"), 60.0);
     EXPECT_NEAR(light_over_mean(stage, "mirror", 4.5), 1.0, 0.02) << mirror.size_m;
   }
+}
+
+// A satellite that passes the camera and does not turn: the bisector turns by a few degrees, and
+// its parts glint within tenths of a second.
+TEST(Glints, ThoseOfSmallPartsAreInTheLightOfATrail) {
+  const Sight sight = lit_sight();
+  for (const double speed_m_per_s : {0.0, 500.0, 3000.0}) {
+    const Vec<Gcrs> r = eye_m + sight.line * 1e5, v = sight.right * speed_m_per_s;
+    char object[512];
+    std::snprintf(object, sizeof object,
+                  "  - name: passing\n    motion: {two_body: {position_m: [%.3f, %.3f, %.3f], "
+                  "velocity_m_per_s: [%.6f, %.6f, %.6f]}}\n    attitude: {inertial: "
+                  "{gcrs_from_body: [1, 0, 0, 0]}}\n    model: oneweb\n",
+                  r.x, r.y, r.z, v.x, v.y, v.z);
+    Stage stage(text_of({.objects = object,
+                         .pointing = "{target: passing}",
+                         .optics = "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, "
+                                   "focal_length_m: 0.05, aperture_m: 0.002}",
+                         .exposure_s = 4.5}));
+    EXPECT_NEAR(light_over_mean(stage, "passing", 4.5), 1.0, 0.005) << speed_m_per_s;
+  }
+}
+
+// The seed and the object decide what glints, the effect switches it off.
+TEST(Glints, ThoseOfSmallPartsCanBeSwitchedOff) {
+  const auto signal_e = [](const std::string& name, int seed, const std::string& effects) {
+    Stage stage(text_of({.objects = shape_at(name, lit_sight(), 1e5, 0, 0,
+                                             "    attitude: {inertial: {gcrs_from_body: [1, 0, 0, "
+                                             "0]}}\n    model: oneweb\n"),
+                         .pointing = "{target: " + name + "}",
+                         .optics = "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, "
+                                   "focal_length_m: 0.05, aperture_m: 0.002}",
+                         .effects = "sky: off, " + effects,
+                         .seed = seed}));
+    return truth_named(stage.frame(), name).rendered_signal_e;
+  };
+  const double smooth = signal_e("a", 1, "glints: off, ");
+  EXPECT_NEAR(signal_e("b", 2, "glints: off, ") / smooth, 1.0, 1e-12);
+  const double a = signal_e("a", 1, "");
+  EXPECT_EQ(signal_e("a", 1, ""), a);
+  // A lobe of the parts of a few reaches the camera; of the light of the others they take a part.
+  std::set<double> of_seeds, of_names;
+  for (int k = 1; k <= 25; ++k) {
+    of_seeds.insert(signal_e("a", k, ""));
+    of_names.insert(signal_e(std::string(1, char('a' + k)), 1, ""));
+  }
+  EXPECT_GT(of_seeds.size(), 2u);
+  EXPECT_GT(of_names.size(), 2u);
+  EXPECT_LT(*of_seeds.begin(), 0.9 * smooth);
+  EXPECT_GT(*of_seeds.rbegin(), smooth);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/projections.h"
 

@@ -2,7 +2,7 @@
 #include <numeric>
 
 #include "core/base/units.h"
-#include "core/detection/detection_json.h"
+#include "core/products/product_json.h"
 #include "core/wcs/wcs.h"
 #include "tests/pipeline/sky_targets.h"
 #include "tests/pipeline/wiring.h"

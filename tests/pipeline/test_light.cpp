@@ -1,4 +1,4 @@
-#include "sensors/pipeline/throughput.h"
+#include "sensors/scene/throughput.h"
 
 #include <cmath>
 #include <map>
@@ -7,8 +7,8 @@
 #include "core/photometry/magnitude.h"
 #include "core/sky/sky_model.h"
 #include "core/sky/surface_brightness.h"
-#include "sensors/pipeline/frame_planes.h"
-#include "sensors/pipeline/sky_layer.h"
+#include "sensors/frame/frame_planes.h"
+#include "sensors/light/sky_layer.h"
 #include "tests/pipeline/wiring.h"
 #include "tests/support/directions.h"
 

@@ -4,10 +4,10 @@
 #include "core/base/units.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/bodies/limb_airglow.h"
+#include "core/sky/bodies/limb_extinction.h"
 #include "core/sky/limb_air.h"
-#include "core/sky/limb_airglow.h"
-#include "core/sky/limb_extinction.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/scene/throughput.h"
 #include "tests/pipeline/body_scenes.h"
 
 // Air and airglow over the Earth's limb in frames of a camera in space.

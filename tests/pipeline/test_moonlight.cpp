@@ -4,7 +4,7 @@
 #include "core/base/units.h"
 #include "core/facets/moonlight.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/moon_disc.h"
+#include "core/sky/bodies/moon_disc.h"
 #include "tests/pipeline/shape_scenes.h"
 #include "tests/pipeline/wiring.h"
 

@@ -1,4 +1,4 @@
-#include "sensors/pipeline/object_light.h"
+#include "sensors/light/object_light.h"
 
 #include <algorithm>
 #include <numeric>

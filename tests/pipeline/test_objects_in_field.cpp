@@ -1,9 +1,9 @@
-#include "sensors/pipeline/objects_in_field.h"
+#include "sensors/objects/objects_in_field.h"
 
 #include <algorithm>
 #include <set>
 
-#include "sensors/pipeline/view.h"
+#include "sensors/scene/view.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/data.h"
 

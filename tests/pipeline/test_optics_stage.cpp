@@ -3,7 +3,7 @@
 
 #include "core/image/fits_cards.h"
 #include "core/wcs/wcs.h"
-#include "sensors/pipeline/optics_stage.h"
+#include "sensors/scene/optics_stage.h"
 #include "tests/pipeline/harness.h"
 
 // Whole frames through each way of blurring.

@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "sensors/pipeline/view.h"
+#include "sensors/scene/view.h"
 #include "tests/pipeline/wiring.h"
 
 // An ellipsoid and an origin of the scenario's own, where frames use them.

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/base/units.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "sensors/frame/make_sensor.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise {

@@ -2,11 +2,11 @@
 #include <filesystem>
 
 #include "core/base/units.h"
-#include "core/config/search_path.h"
+#include "core/config/yaml/search_path.h"
 #include "core/optics/projection.h"
 #include "core/photometry/star_light.h"
-#include "core/sky/air_effects.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/air/air_effects.h"
+#include "core/sky/places/place_effects.h"
 #include "tests/pipeline/harness.h"
 
 // Every camera of launch/cameras, and one of a user's.
@@ -102,8 +102,7 @@ TEST(CameraPresets, AreAllInTheTableAbove) {
 }
 
 TEST(UserCamera, IsAYamlFileByItsPath) {
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    ("user-camera-" + std::to_string(getpid()) + ".yaml");
+  const auto path = std::filesystem::path(testing::TempDir()) / "user-camera.yaml";
   std::ofstream(path) << "name: mine\n"
                          "optics: {columns: 96, rows: 80, pixel_pitch_m: 9e-6,"
                          " focal_length_m: 0.2, aperture_m: 0.1}\n"

@@ -1,7 +1,7 @@
-#include "sensors/pipeline/recorded_plans.h"
+#include "sensors/frame/recorded_plans.h"
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {

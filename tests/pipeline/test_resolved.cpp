@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "core/sky/shadow.h"
+#include "core/sky/bodies/shadow.h"
 #include "sensors/render/resolution.h"
 #include "tests/pipeline/shape_scenes.h"
 

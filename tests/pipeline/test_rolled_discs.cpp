@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "sensors/pipeline/bodies_in_field.h"
+#include "sensors/scene/bodies_in_field.h"
 #include "tests/pipeline/body_scenes.h"
 
 // Discs of Sun, Moon and Earth behind a rolling shutter.

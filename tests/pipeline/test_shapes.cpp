@@ -5,7 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/scene/throughput.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise::test {

@@ -2,7 +2,7 @@
 
 #include "core/base/units.h"
 #include "core/image/fits_cards.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/places/place_effects.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise {
@@ -18,8 +18,7 @@ const std::string finals =
 // Reference: ERFA's eraC2t06a and eraGd2gc, by tests/reference/wiring.py. With UTC for UT1 the site
 // would be 64 m away, without polar motion 11 m.
 TEST(SitePlace, IsByTheUt1AndPoleOfTheEarthOrientationFile) {
-  const auto path =
-      std::filesystem::path(testing::TempDir()) / ("finals-" + std::to_string(getpid()) + ".txt");
+  const auto path = std::filesystem::path(testing::TempDir()) / "finals.txt";
   std::ofstream(path) << finals;
   test::Stage stage(test::scenario(
       "2018-03-06T11:59:55Z", 20,

@@ -1,4 +1,4 @@
-#include "sensors/pipeline/stage_times.h"
+#include "sensors/scene/stage_times.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "core/base/units.h"
 #include "core/effects/frame_effects.h"
-#include "sensors/pipeline/star_layer.h"
+#include "sensors/light/star_layer.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {

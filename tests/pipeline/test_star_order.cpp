@@ -1,4 +1,4 @@
-#include "sensors/pipeline/star_order.h"
+#include "sensors/light/star_order.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "sensors/pipeline/star_path_grid.h"
+#include "sensors/light/star_path_grid.h"
 
 #include <random>
 
-#include "core/base/simd_level.h"
+#include "core/base/numeric/simd_level.h"
 #include "core/base/units.h"
 #include "core/optics/projection.h"
-#include "core/sky/air_exposure.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air/air_exposure.h"
+#include "core/sky/air/airmass.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {

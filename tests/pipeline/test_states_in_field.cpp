@@ -1,4 +1,4 @@
-#include "sensors/pipeline/states_in_field.h"
+#include "sensors/objects/states_in_field.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/moon_disc.h"
+#include "core/sky/bodies/moon_disc.h"
 #include "tests/pipeline/body_scenes.h"
 
 // Light of Sun, Moon and Earth beside the field.

@@ -1,8 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/units.h"
 #include "core/effects/frame_effects.h"
-#include "sensors/pipeline/expected_electrons.h"
+#include "sensors/light/expected_electrons.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {
@@ -108,6 +109,73 @@ TEST(SyntheticFrames, APlanStopsAtWhatTheCameraSees) {
                "focal_length_m: 0.01, aperture_m: 0.005");
   test::Stage all_sky(wide, one_star);
   EXPECT_LE(level(all_sky.frame()), 13.0);
+}
+
+// A plan that finds no star of the catalogue in the field, and little light in the smooth
+// starlight beside the noise, draws those beyond it.
+TEST(SyntheticFrames, AreInAFieldWithoutAStarOfTheCatalogue) {
+  std::string brief = scenario(", synthetic_to: limit", "", "accuracy: standard\n");
+  brief.replace(brief.find("exposure_s: 2\n"), 14, "exposure_s: 0.1\n");
+  brief.replace(brief.find("read_noise: off"), 15, "read_noise: on");
+  brief.replace(brief.find("gain_e_per_dn: 1}"), 17, "gain_e_per_dn: 1, read_noise_e: 9}");
+  brief.replace(brief.find("ra_deg: 95, dec_deg: 20"), 23, "ra_deg: 190, dec_deg: 27");
+  test::Stage stage(brief, one_star);
+  EXPECT_GT(stage.frame().stars.size(), 5u);
+}
+
+// In orbit, where a star keeps its place, snapshots have each star where its path has it.
+TEST(SyntheticFrames, InSnapshotsHaveTheirOwnPlaces) {
+  const auto stars_of = [](const std::string& integration) {
+    std::string yaml = scenario(", synthetic_to: 17", integration);
+    const std::size_t place = yaml.find("    site: "), end = yaml.find('\n', place);
+    yaml.replace(place, end - place, "    platform: bus");
+    yaml.replace(yaml.find("sky: dark"), 9, "sky: space");
+    yaml += "objects:\n  - name: bus\n    motion: {fixed: {gcrs_m: [-42000000, 0, 0]}}\n";
+    return test::Stage(yaml, one_star).frame().stars;
+  };
+  const auto along_paths = stars_of("");
+  const auto in_snapshots = stars_of(", integration: snapshots, snapshots: 4");
+  ASSERT_GT(along_paths.size(), 50u);
+  ASSERT_EQ(in_snapshots.size(), along_paths.size());
+  for (std::size_t i = 0; i < along_paths.size(); ++i) {
+    ASSERT_EQ(in_snapshots[i].id, along_paths[i].id);
+    EXPECT_NEAR(in_snapshots[i].x_px, along_paths[i].x_px, 0.01);
+    EXPECT_NEAR(in_snapshots[i].y_px, along_paths[i].y_px, 0.01);
+    EXPECT_NEAR(in_snapshots[i].signal_e, along_paths[i].signal_e, 1e-3 * along_paths[i].signal_e);
+  }
+}
+
+// The limit of a frame is where stars drown: they end within a magnitude of the faintest that has
+// 2.5 times its noise, also without a plan, and the whole sky is not drawn to V = 21.
+TEST(SyntheticFrames, EndAtTheLimitOfTheFrame) {
+  for (const char* accuracy : {"", "accuracy: standard\n", "accuracy: reference\n"}) {
+    test::Stage narrow(scenario(", synthetic_to: limit", "", accuracy), one_star);
+    const FrameProducts frame = narrow.frame();
+    const double limit =
+        SyntheticBackground::limit_v_mag(frame.plan.effects.level(SyntheticBackground::facts));
+    EXPECT_GE(limit, 15.0) << accuracy;
+    EXPECT_LE(limit, 20.0) << accuracy;
+    ASSERT_GT(frame.stars.size(), 50u);
+    double faintest = 0.0, faintest_e = 0.0;
+    for (const auto& star : frame.stars)
+      if (star.v_mag > faintest) faintest = star.v_mag, faintest_e = star.signal_e;
+    EXPECT_LE(faintest, limit);
+    // Closed form: the root of the sum of squares of a Gaussian of 2 px with its pixel, and the
+    // noise of the frame's level. Colours of stars differ by a tenth.
+    auto counts = frame.counts.pixels;
+    std::ranges::nth_element(counts, counts.begin() + std::ptrdiff_t(counts.size() / 2));
+    const double noise_e = std::sqrt(double(counts[counts.size() / 2]));
+    const double snr = faintest_e * 0.3145 / noise_e;
+    EXPECT_LT(snr, 2.75) << accuracy;
+    EXPECT_GT(snr, 0.6) << accuracy;
+  }
+  std::string wide = scenario(", synthetic_to: limit", "");
+  wide.replace(wide.find("focal_length_m: 0.88, aperture_m: 0.4"), 37,
+               "focal_length_m: 0.01, aperture_m: 0.005");
+  test::Stage all_sky(wide, one_star);
+  const FrameProducts frame = all_sky.frame();
+  EXPECT_LE(SyntheticBackground::limit_v_mag(frame.plan.effects.level(SyntheticBackground::facts)),
+            13.0);
 }
 
 TEST(SyntheticFrames, OfTheGalacticCentreAndThePoleAreDrawn) {

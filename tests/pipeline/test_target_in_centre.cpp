@@ -4,16 +4,16 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/config/camera_config.h"
-#include "core/config/pointing_config.h"
-#include "core/config/search_path.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/sensors/camera_config.h"
+#include "core/config/sensors/pointing_config.h"
+#include "core/config/yaml/search_path.h"
+#include "core/config/yaml/yaml_reader.h"
 #include "core/frames/geodesy.h"
 #include "core/optics/projection.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/places/place_effects.h"
 #include "core/time/iso8601.h"
-#include "sensors/pipeline/sensor_evaluator.h"
-#include "sensors/pipeline/view.h"
+#include "sensors/frame/sensor_evaluator.h"
+#include "sensors/scene/view.h"
 #include "tests/pipeline/harness.h"
 
 // A mount that points at an object has the object's light in the middle of its frame.

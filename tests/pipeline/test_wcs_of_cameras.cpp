@@ -8,8 +8,8 @@
 #include "core/image/fits_file.h"
 #include "core/optics/projection.h"
 #include "core/wcs/wcs.h"
-#include "sensors/pipeline/header_of.h"
-#include "sensors/pipeline/view.h"
+#include "sensors/frame/header_of.h"
+#include "sensors/scene/view.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/projections.h"
 
@@ -139,7 +139,7 @@ TEST_P(WcsOfCameras, AstropyAgreesWithinTheStatedErrorWhereverSkyIsSeen) {
   if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)
     GTEST_SKIP() << "needs python3-astropy";
   const auto directory = std::filesystem::path(testing::TempDir()) /
-                         ("wcs-of-cameras-" + std::to_string(getpid()) + GetParam().name);
+                         ("wcs-of-cameras-" + std::string(GetParam().name));
   std::filesystem::create_directories(directory);
   const auto all = cases(GetParam());
   std::vector<Asked> asked;

@@ -1,4 +1,4 @@
-#include "sensors/pipeline/world.h"
+#include "sensors/scene/world.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 #include "core/plan/cost_factors.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,7 +11,7 @@ namespace dmise {
 namespace {
 
 std::string file_of(const std::string& text) {
-  const std::string path = testing::TempDir() + "cost-factors-" + std::to_string(getpid()) + ".txt";
+  const std::string path = testing::TempDir() + "cost-factors.txt";
   std::ofstream(path) << text;
   return path;
 }

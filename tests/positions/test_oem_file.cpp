@@ -1,13 +1,12 @@
 #include "core/orbit/oem_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
 #include "core/orbit/oem.h"
 
 namespace dmise {
@@ -33,8 +32,8 @@ class OemFileTest : public testing::Test {
 
  protected:
   OemFileTest() { std::filesystem::remove(path_); }
-  std::string path_ = testing::TempDir() + "/oem-" + std::to_string(getpid()) + "-" +
-                      testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::string path_ =
+      testing::TempDir() + "/oem-" + testing::UnitTest::GetInstance()->current_test_info()->name();
   OemSubject subject_{"ISS (ZARYA)", "98067A", "2018-01-21T00:00:00.000000000Z"};
   Circle circle_;
 };

@@ -3,7 +3,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <fstream>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
 #include "core/orbit/oem.h"
 #include "sensors/positions/positions_evaluator.h"

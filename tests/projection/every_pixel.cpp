@@ -61,7 +61,7 @@ void expect_one_to_one_at_every_pixel(const Optics& optics) {
 std::vector<PixelPosition> places_by_opencv(const std::string& model,
                                             const std::vector<double>& coefficients,
                                             const std::vector<Vec<CameraFrame>>& directions) {
-  const std::string file = testing::TempDir() + "/opencv-" + std::to_string(getpid()) + ".txt";
+  const std::string file = testing::TempDir() + "/opencv.txt";
   std::ofstream lines(file);
   lines.precision(17);
   for (const double c : coefficients) lines << c << " ";

@@ -10,11 +10,8 @@ source-extractor; without them it says so and exits 77, with DMISE_DATA set 1.
 """
 
 import argparse
-import datetime
 import itertools
 import pathlib
-import platform
-import re
 import subprocess
 import sys
 import tempfile
@@ -126,18 +123,6 @@ def found_tables(kinds, settings, dmise):
             table(["frames", "detector, at 1 a frame"] + bins, snr_rows))
 
 
-def machine():
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
-               platform.machine())
-    import galsim
-    import sep
-    version = subprocess.run(["source-extractor", "--version"], capture_output=True, text=True).stdout
-    number = re.search(r"[0-9][0-9.]*", version) or ["of an unknown version"]
-    day = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d")
-    return (f"{cpu}, {day}; sep {sep.__version__}, source-extractor {number[0]}, "
-            f"galsim {galsim.__version__}")
-
-
 def document(dmise, directory, frames, nights):
     kinds, point_scenes = scenes_of(dmise, directory, frames, ("atlanta", "huntsville"), nights)
     found, by_snr = found_tables(kinds, SETTINGS, dmise)
@@ -148,7 +133,7 @@ def document(dmise, directory, frames, nights):
     return (found + "\n" + by_snr + f"\n{n} points of an SNR of 15 to 350, which all three find:\n\n"
             + table(["detector", "rms, px", "over its bound", "magnitude bias", "scatter", "over its bound"], point_rows)
             + "\nAn all-sky frame of 3326 x 2504 pixels, one thread:\n\n"
-            + table(["detector", "seconds", "peak memory, MB"], cost_rows) + f"\nMeasured on {machine()}.\n")
+            + table(["detector", "seconds", "peak memory, MB"], cost_rows) + f"\nMeasured on {referee.occasion()}; {peer_detectors.versions()}.\n")
 
 
 def between(text, inside):

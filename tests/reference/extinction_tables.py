@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints core/sky/extinction_tables.inc from observatories' curves (the argument: their folder), each
+"""Prints core/sky/air/extinction_tables.inc from observatories' curves (the argument: their folder), each
 sampled at the same wavelengths; beyond a curve's red end its last slope-free value."""
 import sys
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints core/sky/gas_tables.inc: absorption coefficients of water vapour and of the well-mixed gases of Bird & Riordan
+"""Prints core/sky/air/gas_tables.inc: absorption coefficients of water vapour and of the well-mixed gases of Bird & Riordan
 1986, J. Climate Appl. Meteor. 25, 87, table 1 (SPECTRL2), as pvlib has them.
 """
 from pvlib.spectrum.spectrl2 import _SPECTRL2_COEFFS as table

@@ -7,6 +7,7 @@ has 5 connected pixels above a threshold in units of the noise.
 
 import json
 import pathlib
+import re
 import subprocess
 import tempfile
 import time
@@ -19,6 +20,7 @@ import referee
 
 COLUMNS = ["x", "y", "length", "width", "snr", "auto_e", "aperture_e"]
 LEAST_PIXELS = 5
+MOST_HALF_PX = 15  # of a filter of source-extractor
 APERTURE_FWHM = 3.0  # diameter of the aperture in units of the point spread's FWHM; its share of a point's light is known
 
 
@@ -33,7 +35,7 @@ def catalogue(columns):
 
 def kernel(fwhm_px):
     """Gaussian over odd squares of pixels, of unit sum."""
-    half = int(np.ceil(1.5 * fwhm_px))
+    half = min(int(np.ceil(1.5 * fwhm_px)), MOST_HALF_PX)
     axis = np.exp(-4 * np.log(2) * (np.arange(-half, half + 1) / fwhm_px) ** 2)
     grid = np.outer(axis, axis)
     return grid / grid.sum()
@@ -45,8 +47,8 @@ def aperture_share(header):
     return 1 - np.exp(-radius**2 / (2 * peer_frames.sigma_px(header["PSFFWHM"]) ** 2))
 
 
-def dmise(binary, path):
-    done = subprocess.run([binary, "detect", path], capture_output=True, text=True)
+def dmise(binary, path, *options):
+    done = subprocess.run([binary, "detect", path, *options], capture_output=True, text=True)
     if done.returncode != 0:
         raise referee.Failure(f"dmise detect: {done.stderr.strip()}")
     found = [json.loads(line) for line in done.stdout.splitlines()]
@@ -57,8 +59,9 @@ def dmise(binary, path):
         "aperture_e": np.array([d["signal_e"] for d in found])})
 
 
-def with_sep(counts, header, threshold, wider=1.0, contrast=0.005, stack_px=10_000_000):
-    """sep (SExtractor's methods as a library); returns the catalogue and the seconds of processor."""
+def with_sep(counts, header, threshold, wider=1.0, contrast=0.005, stack_px=10_000_000, light=True):
+    """sep (SExtractor's methods as a library), with or without windowed places and light; returns the catalogue and the seconds of
+    processor."""
     import sep
     sep.set_extract_pixstack(stack_px)
     sep.set_sub_object_limit(65536)
@@ -70,6 +73,11 @@ def with_sep(counts, header, threshold, wider=1.0, contrast=0.005, stack_px=10_0
     noise = background.rms()
     found = sep.extract(data, threshold, err=noise, minarea=LEAST_PIXELS, filter_kernel=kernel(wider * fwhm),
                         deblend_cont=contrast)
+    local = noise[np.clip(np.rint(found["y"]), 0, None).astype(int), np.clip(np.rint(found["x"]), 0, None).astype(int)]
+    shapes = {"length": np.sqrt(12) * found["a"], "width": np.sqrt(12) * found["b"],
+              "snr": found["flux"] / (local * np.sqrt(found["npix"]))}
+    if not light:
+        return catalogue({"x": found["x"], "y": found["y"], **shapes}), time.process_time() - start
     # A window 1.2 times as wide as a point: of those tried the one with the least errors.
     window = np.full(len(found), 1.2 * peer_frames.sigma_px(fwhm))
     x, y, _ = sep.winpos(data, found["x"], found["y"], window)
@@ -78,12 +86,8 @@ def with_sep(counts, header, threshold, wider=1.0, contrast=0.005, stack_px=10_0
     auto, _, _ = sep.sum_ellipse(data, found["x"], found["y"], *shape, 2.5 * np.maximum(kron, 1.4), subpix=5)
     circle, _, _ = sep.sum_circle(data, x, y, APERTURE_FWHM * fwhm / 2, subpix=5)
     seconds = time.process_time() - start
-    local = noise[np.clip(np.rint(found["y"]), 0, None).astype(int), np.clip(np.rint(found["x"]), 0, None).astype(int)]
     gain = header["GAIN"]
-    return catalogue({
-        "x": x, "y": y, "length": np.sqrt(12) * found["a"], "width": np.sqrt(12) * found["b"],
-        "snr": found["flux"] / (local * np.sqrt(found["npix"])), "auto_e": gain * auto,
-        "aperture_e": gain * circle / aperture_share(header)}), seconds
+    return catalogue({"x": x, "y": y, **shapes, "auto_e": gain * auto, "aperture_e": gain * circle / aperture_share(header)}), seconds
 
 
 SOURCE_EXTRACTOR_COLUMNS = ["XWIN_IMAGE", "YWIN_IMAGE", "A_IMAGE", "B_IMAGE", "FLUX_ISO", "FLUXERR_ISO", "FLUX_AUTO",
@@ -137,6 +141,15 @@ def cost_of(command, directory="."):
         raise referee.Failure(f"{command[0]}: {done.stderr.strip()[-300:]}")
     seconds, peak_mb = map(float, done.stdout.split())
     return seconds, peak_mb
+
+
+def versions():
+    """Of the others, and of GalSim."""
+    import galsim
+    import sep
+    said = subprocess.run(["source-extractor", "--version"], capture_output=True, text=True).stdout
+    number = re.search(r"[0-9][0-9.]*", said) or ["of an unknown version"]
+    return f"sep {sep.__version__}, source-extractor {number[0]}, galsim {galsim.__version__}"
 
 
 def memory_mb(key):

@@ -7,6 +7,7 @@ import numpy as np
 import peer_frames
 
 GATE_PX = 5.0  # a detection is of a streak if its centroid is so near to its line
+ROUND = (1.1, 1.2, 1.35, 1.5, 2.0, 3.0)
 ELONGATIONS = (1.0, 1.3, 1.6, 2.0, 3.0, 5.0)
 NO_STREAK, OTHER = -1, -2
 LENGTHS_PX = (0.0, 5.0, 8.0, 12.0, 16.0, 24.0, 40.0)
@@ -48,6 +49,11 @@ class Candidates:
     def best(self, false_alarms):
         """Set of streaks found with at most so many false alarms, without any choice but by SNR."""
         return self._down_to(np.arange(len(self.found)), "snr", false_alarms)
+
+    def best_of_points(self, false_alarms):
+        """The largest such set over all greatest elongations."""
+        elongation = self.found["length"] / np.maximum(self.found["width"], 1e-3)
+        return max((self._down_to(np.flatnonzero(elongation <= most), "snr", false_alarms) for most in ROUND + (np.inf,)), key=len)
 
     def best_of_cuts(self, false_alarms):
         """The largest such set over all least elongations, least lengths, and orders by SNR or length."""

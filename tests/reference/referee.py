@@ -6,10 +6,12 @@ set that is a failure.
 """
 
 import dataclasses
+import datetime
 import gzip
 import json
 import os
 import pathlib
+import platform
 import shutil
 import subprocess
 import sys
@@ -46,6 +48,12 @@ def main(judge, *arguments):
         sys.exit(77)
     except Failure as failure:
         sys.exit(f"FAIL: {failure}")
+
+
+def occasion():
+    """Processor and day of a measurement."""
+    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    return f"{' '.join(model.split()[:2])}, {datetime.date.today()}"
 
 
 def need(program):

@@ -1,4 +1,4 @@
-"""Refraction by tracing rays through standard atmospheres, for tests/sky/test_refraction.cpp and core/sky/refraction.cpp.
+"""Refraction by tracing rays through standard atmospheres, for tests/sky/test_refraction.cpp and core/sky/air/refraction.cpp.
 
     refraction.py          tables of the tests
     refraction.py --fit    by how much rays are bent more than Bennett has it, as two falling exponentials

@@ -1,7 +1,7 @@
-"""Counts of stars by others, and the table of core/sky/star_counts.cpp that is made of them.
+"""Counts of stars by others, and the table of core/sky/stars/star_counts.cpp that is made of them.
 
     star_counts.py DEEPSTARS           figures for tests/sky/test_star_counts.cpp
-    star_counts.py DEEPSTARS --table   core/sky/star_counts_table.inc
+    star_counts.py DEEPSTARS --table   core/sky/stars/star_counts_table.inc
 
 DEEPSTARS: KStars' deepstars.dat, which holds Tycho-2. Bahcall & Soneira 1980, ApJS 44, 73: the fit of appendix B in V, for |b| >= 20 deg,
 within 15 % of their model. Whole sky: Tycho-2 with UCAC4 to V = 16 (hnsky.org/star_count.htm; the magnitudes of UCAC4 are redder than V

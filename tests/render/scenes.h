@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config/material_config.h"
+#include "core/config/objects/material_config.h"
 #include "core/materials/obj_file.h"
 #include "core/materials/shapes.h"
 #include "sensors/render/render_module.h"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/base/digest.h"
 #include "core/base/error.h"
-#include "core/base/rng.h"
-#include "core/optics/deposit.h"
+#include "core/base/files/digest.h"
+#include "core/base/numeric/rng.h"
+#include "core/optics/blur/deposit.h"
 #include "core/sky/sky_grid.h"
 #include "sensors/render/render_module.h"
 #include "tests/support/command.h"

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 
@@ -16,9 +15,9 @@ using testing::Not;
 const std::string hostile = "</script><script>alert(1)</script><!--";
 
 RunContents run_of(std::size_t sensors, std::uint32_t frames) {
-  RunContents run{.directory = "RUN", .status = "complete"};
+  RunContents run{.directory = "RUN", .record = {.status = "complete"}};
   for (std::size_t s = 0; s < sensors; ++s) {
-    run.sensors.push_back({.name = hostile + std::to_string(s), .frames = frames});
+    run.sensors.push_back({.sensor = {.name = hostile + std::to_string(s)}, .frames = frames});
     for (std::uint32_t f = 1; f <= frames; ++f)
       run.frames.push_back({.sensor = s, .number = f, .middle = {f * 1'000'000'000ll}});
   }
@@ -55,7 +54,7 @@ TEST(RunReport, IsTheSameForTheSameRun) {
 }
 
 TEST(RunReport, RefusesADirectoryWithoutARun) {
-  const std::string empty = testing::TempDir() + "/no-run-" + std::to_string(getpid());
+  const std::string empty = testing::TempDir() + "/no-run";
   std::filesystem::create_directory(empty);
   EXPECT_THROW(read_contents(empty), ConfigError);
   std::filesystem::remove(empty);

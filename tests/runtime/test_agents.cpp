@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "nodes/agent/host_agent.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"

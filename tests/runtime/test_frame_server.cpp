@@ -242,7 +242,7 @@ TEST(FrameServer, KeepsNothingForWhoDoesNotRead) {
   auto reader = sensor.reader();
   ask(reader, asking(10));
   EXPECT_EQ(hear(reader).first, 10u);
-  EXPECT_LE(most.load(), 20 * 3 + 5);  // of 2,000: two that wait for each, and one being sent
+  EXPECT_LE(most.load(), 20 * FrameServer::most_unread + 1);  // of 2,000
 }
 
 TEST(FrameServer, WithKeysAnswersThoseWhoMayComeIn) {

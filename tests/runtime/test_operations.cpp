@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/base/whole_file.h"
+#include "core/base/files/whole_file.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/observability/status.h"
 #include "tests/runtime/http.h"

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "dmise/v1/node.pb.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/master_link/master_link.h"

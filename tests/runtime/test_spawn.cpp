@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 
 namespace dmise {
 namespace {
@@ -39,8 +39,7 @@ class SpawnTest : public testing::Test {
   std::string log() const { return read_text_file(log_); }
 
   const std::string directory_ =
-      (std::filesystem::temp_directory_path() / ("dmise-spawn-" + std::to_string(getpid())))
-          .string();
+      (std::filesystem::path(testing::TempDir()) / "dmise-spawn").string();
   const std::string log_ = directory_ + "/log";
 };
 

@@ -4,8 +4,8 @@
 #
 #   run.sh address|thread BIN_DIRECTORY [PROGRAM..]
 #
-# Under AddressSanitizer all run but for what `left-out.txt` names, which says why; `thread.txt` lists the
-# programs that run under ThreadSanitizer.
+# Which programs there are of each kind says programs.sh; of a program that runs under AddressSanitizer `left-out.txt` names the tests
+# that do not, and says why.
 set -euo pipefail
 
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
@@ -33,12 +33,7 @@ case $kind in
   *) echo "sanitizers: $kind: must be address or thread" >&2; exit 2 ;;
 esac
 
-if (($# == 0)); then
-  case $kind in
-    address) set -- $(grep -vxFf <(grep -vF . <<<"$named") "$bin/../unit-tests.txt") ;;
-    thread) set -- $(<"$here/thread.txt") ;;
-  esac
-fi
+(($#)) || set -- $("$here/programs.sh" "$kind" "$bin/../unit-tests.txt")
 
 run_one() {
   local name=${1##*/} log=$reports/${1##*/}.log began=$SECONDS code=0

@@ -17,7 +17,7 @@ struct DeepStar {
   std::int16_t vt = 900, bt_vt = 0;
 };
 
-/// A file of one trixel, as the layout at the head of core/sky/star_file_deep.cpp says.
+/// A file of one trixel, as the layout at the head of core/sky/stars/star_file_deep.cpp says.
 inline std::string deep_file(const std::vector<DeepStar>& stars) {
   std::string bytes = "KStars Star Data v1.0. To be read using the 32-bit starData structure only.";
   bytes.resize(124);

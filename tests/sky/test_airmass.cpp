@@ -1,4 +1,4 @@
-#include "core/sky/airmass.h"
+#include "core/sky/air/airmass.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/sky/apparent.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/places/apparent.h"
+#include "core/sky/places/place_effects.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {

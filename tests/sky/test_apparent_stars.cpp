@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include "core/sky/apparent.h"
-#include "core/sky/place_effects.h"
+#include "core/sky/places/apparent.h"
+#include "core/sky/places/place_effects.h"
 #include "core/time/iso8601.h"
 #include "tests/support/data.h"
 #include "tests/support/directions.h"

@@ -1,4 +1,4 @@
-#include "core/sky/clouds.h"
+#include "core/sky/air/clouds.h"
 
 #include <gtest/gtest.h>
 

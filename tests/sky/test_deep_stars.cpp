@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
-#include "core/sky/star_file.h"
-#include "core/sky/star_map.h"
-#include "core/sky/star_merge.h"
+#include "core/sky/stars/star_file.h"
+#include "core/sky/stars/star_map.h"
+#include "core/sky/stars/star_merge.h"
 #include "tests/sky/deep_file.h"
 #include "tests/support/config_error.h"
 #include "tests/support/data.h"

@@ -4,9 +4,9 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/earth_disc.h"
-#include "core/sky/moon_disc.h"
-#include "core/sky/sun_disc.h"
+#include "core/sky/bodies/earth_disc.h"
+#include "core/sky/bodies/moon_disc.h"
+#include "core/sky/bodies/sun_disc.h"
 
 namespace dmise {
 namespace {

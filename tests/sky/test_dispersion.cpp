@@ -1,12 +1,12 @@
-#include "core/sky/dispersion.h"
+#include "core/sky/air/dispersion.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/sky/airmass.h"
-#include "core/sky/extinction.h"
+#include "core/sky/air/airmass.h"
+#include "core/sky/air/extinction.h"
 
 namespace dmise {
 namespace {

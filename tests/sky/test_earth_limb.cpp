@@ -1,11 +1,11 @@
-#include "core/sky/earth_limb.h"
+#include "core/sky/bodies/earth_limb.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/sky/occultation.h"
+#include "core/sky/bodies/occultation.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/sky/extinction.h"
+#include "core/sky/air/extinction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/sky/gaia_stars.h"
+#include "core/sky/stars/gaia_stars.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/sky/star_file.h"
+#include "core/sky/stars/star_file.h"
 #include "tests/sky/gaia_table.h"
 #include "tests/support/config_error.h"
 

@@ -1,4 +1,4 @@
-#include "core/sky/gas_absorption.h"
+#include "core/sky/air/gas_absorption.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/star_spectrum.h"
-#include "core/sky/extinction.h"
+#include "core/sky/air/extinction.h"
 
 namespace dmise {
 namespace {

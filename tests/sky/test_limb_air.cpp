@@ -4,10 +4,10 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/air/standard_air.h"
+#include "core/sky/air/sunlit_air.h"
+#include "core/sky/bodies/limb_extinction.h"
 #include "core/sky/limb_air.h"
-#include "core/sky/limb_extinction.h"
-#include "core/sky/standard_air.h"
-#include "core/sky/sunlit_air.h"
 
 namespace dmise {
 namespace {

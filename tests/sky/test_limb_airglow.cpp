@@ -4,7 +4,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/limb_airglow.h"
+#include "core/sky/bodies/limb_airglow.h"
 #include "core/sky/surface_brightness.h"
 
 namespace dmise {

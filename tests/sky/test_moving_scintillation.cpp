@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/base/units.h"
-#include "core/sky/air_extinction.h"
-#include "core/sky/scintillation.h"
+#include "core/sky/air/air_extinction.h"
+#include "core/sky/air/scintillation.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/sky/occultation.h"
+#include "core/sky/bodies/occultation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/sky/refraction.h"
+#include "core/sky/air/refraction.h"
 
 #include <erfa.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/effects/plan_facts.h"
-#include "core/sky/atmospheric_refraction.h"
+#include "core/sky/places/atmospheric_refraction.h"
 #include "core/sky/scattered_moonlight.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "core/sky/shadow.h"
+#include "core/sky/bodies/shadow.h"
 
 #include <gtest/gtest.h>
 

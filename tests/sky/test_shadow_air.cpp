@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/sky/shadow.h"
+#include "core/sky/bodies/shadow.h"
 
 namespace dmise {
 namespace {

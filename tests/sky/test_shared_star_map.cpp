@@ -1,7 +1,6 @@
-#include "core/sky/shared_star_map.h"
+#include "core/sky/stars/shared_star_map.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,7 +8,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/file_version.h"
+#include "core/base/files/file_version.h"
 
 namespace dmise {
 namespace {
@@ -32,8 +31,7 @@ struct SharedStarMap : testing::Test {
     return share_star_map(path, directory_ / "cache");
   }
 
-  const std::filesystem::path directory_ =
-      std::filesystem::path(testing::TempDir()) / ("shared-" + std::to_string(getpid()));
+  const std::filesystem::path directory_ = std::filesystem::path(testing::TempDir()) / "shared";
 };
 
 TEST_F(SharedStarMap, IsLoadedOnce) {

@@ -7,7 +7,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/extinction.h"
+#include "core/sky/air/extinction.h"
 #include "core/sky/sky_model.h"
 
 namespace dmise {

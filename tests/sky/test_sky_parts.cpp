@@ -7,9 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/air/extinction.h"
 #include "core/sky/airglow.h"
-#include "core/sky/airmass.h"
-#include "core/sky/extinction.h"
 #include "core/sky/faint_starlight.h"
 #include "core/sky/light_pollution.h"
 #include "core/sky/scattered_moonlight.h"
@@ -209,16 +208,44 @@ TEST(Twilight, DawnIsContinuousAndMonotone) {
   }
 }
 
-// Schaefer 1993 for k = 0.2 at 10 deg altitude and 30 deg from the Sun, over the zenith 100 deg
-// from it, by hand: 10^(0.4 x 80/72) x (100/30) x (1 - 10^(-0.08 x 3.8084)) / (1 - 10^-0.08)
-// = 2.7826 x 3.3333 x 0.50419 / 0.16824.
-TEST(Twilight, PatternBySchaefer) {
-  EXPECT_NEAR(scattering_airmass(std::sin(10 * deg)), 3.8084, 1e-4);
-  EXPECT_NEAR(
-      twilight_pattern(std::sin(10 * deg), 30 * deg, 0.2) / twilight_pattern(1.0, 100 * deg, 0.2),
-      27.79, 0.05);
-  EXPECT_GT(twilight_pattern(0.2, 18 * deg, 0.17), 5 * twilight_pattern(0.2, 178 * deg, 0.17));
-  EXPECT_TRUE(std::isfinite(twilight_pattern(-0.1, 0.0, 0.0)));
+Vec<Enu> north_at(double azimuth_deg, double altitude_deg) {
+  return from_spherical<Enu>((90 - azimuth_deg) * deg, altitude_deg * deg);
+}
+
+// tests/reference/twilight_light.py, all orders of scattering in spherical air.
+TEST(TwilightPattern, IsThatOfScatteringInSphericalAir) {
+  const struct {
+    double depression_deg, over_zenith[5];  // 30 deg up, every 45 deg from the Sun's azimuth
+  } rows[] = {{3, {3.47, 2.65, 1.74, 1.78, 1.95}},  {6, {5.44, 3.74, 1.80, 1.25, 1.18}},
+              {9, {6.13, 4.14, 2.10, 1.88, 2.12}},  {12, {4.31, 3.30, 1.99, 1.94, 2.22}},
+              {15, {4.03, 3.07, 1.89, 1.82, 2.02}}, {18, {4.26, 3.15, 1.85, 1.64, 1.73}}};
+  for (const auto& [depression_deg, over_zenith] : rows) {
+    const TwilightPattern pattern(north_at(80, -depression_deg));
+    EXPECT_NEAR(pattern.over_zenith({0, 0, 1}), 1.0, 1e-12);
+    for (int i = 0; i < 5; ++i)
+      EXPECT_NEAR(pattern.over_zenith(north_at(80 + 45 * i, 30)), over_zenith[i],
+                  0.08 * over_zenith[i])
+          << depression_deg << " " << 45 * i;
+  }
+}
+
+TEST(TwilightPattern, IsContinuousAndFinite) {
+  for (const double sun_deg : {89.0, 10.0, 0.0, -0.5, -7.5, -18.0, -18.1, -89.0}) {
+    const TwilightPattern pattern(north_at(80, sun_deg)), later(north_at(80, sun_deg - 0.02));
+    for (const double azimuth : {0.0, 80.0, 170.0, 261.0}) {
+      double last = pattern.over_zenith(north_at(azimuth, -90));
+      for (double altitude = -90; altitude <= 270; altitude += 0.1) {
+        const double here = pattern.over_zenith(north_at(azimuth, altitude));
+        ASSERT_TRUE(std::isfinite(here) && here > 0.0) << sun_deg << " " << altitude;
+        EXPECT_NEAR(here / last, 1.0, 0.15) << sun_deg << " " << azimuth << " " << altitude;
+        if (altitude >= 0.0 && altitude <= 180.0) {
+          EXPECT_NEAR(later.over_zenith(north_at(azimuth, altitude)) / here, 1.0, 0.05)
+              << sun_deg << " " << azimuth << " " << altitude;
+        }
+        last = here;
+      }
+    }
+  }
 }
 
 // Patat et al. 2006: twilight 5 deg down has B-V 0.00, V-R 0.44, V-I 0.91.

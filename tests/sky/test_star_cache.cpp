@@ -1,4 +1,4 @@
-#include "core/sky/star_cache.h"
+#include "core/sky/stars/star_cache.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -16,11 +16,11 @@
 #include <limits>
 #include <memory>
 
-#include "core/base/crc32c.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
-#include "core/base/whole_file.h"
-#include "core/sky/star_cache_file.h"
+#include "core/base/files/crc32c.h"
+#include "core/base/files/text_file.h"
+#include "core/base/files/whole_file.h"
+#include "core/sky/stars/star_cache_file.h"
 
 namespace dmise {
 namespace {
@@ -32,7 +32,7 @@ constexpr std::size_t header_bytes = 2944, crc_at = 12, columns_at_at = 48, figu
 class StarCache : public testing::Test {
  protected:
   void SetUp() override {
-    std::string made = (fs::temp_directory_path() / "dmise-stars-XXXXXX").string();
+    std::string made = (fs::path(testing::TempDir()) / "dmise-stars-XXXXXX").string();
     ASSERT_NE(mkdtemp(made.data()), nullptr);
     directory_ = made;
     source_ = directory_ + "/stars.csv";

@@ -1,4 +1,4 @@
-#include "core/sky/star_catalogue.h"
+#include "core/sky/stars/star_catalogue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/sky/star_counts.h"
+#include "core/sky/stars/star_counts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
-#include "core/sky/star_file.h"
+#include "core/sky/stars/star_file.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/digest.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/files/digest.h"
+#include "core/base/files/text_file.h"
 #include "core/base/units.h"
 #include "tests/support/data.h"
 

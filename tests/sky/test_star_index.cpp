@@ -1,11 +1,11 @@
-#include "core/sky/star_index.h"
+#include "core/sky/stars/star_index.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "core/base/units.h"
-#include "core/sky/star_map.h"
+#include "core/sky/stars/star_map.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 
 #include <erfa.h>
 #include <gtest/gtest.h>

@@ -27,7 +27,7 @@ TEST(SurfaceBrightness, Presets) {
   EXPECT_EQ(zenith_brightness_named("urban"), 18.0);
   EXPECT_EQ(zenith_brightness_named("suburban"), 20.0);
   EXPECT_EQ(zenith_brightness_named("dark"), 21.9);
-  EXPECT_EQ(zenith_brightness_named("space"), 21.0);
+  EXPECT_EQ(zenith_brightness_named("space"), 22.0);
   EXPECT_FALSE(zenith_brightness_named("disco"));
 }
 

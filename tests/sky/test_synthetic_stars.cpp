@@ -1,4 +1,4 @@
-#include "core/sky/synthetic_stars.h"
+#include "core/sky/stars/synthetic_stars.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <set>
 
 #include "core/base/units.h"
+#include "core/frames/sky_frames.h"
 #include "core/photometry/magnitude.h"
-#include "core/sky/sky_frames.h"
-#include "core/sky/sphere_cells.h"
-#include "core/sky/star_counts.h"
+#include "core/sky/stars/sphere_cells.h"
+#include "core/sky/stars/star_counts.h"
 
 namespace dmise {
 namespace {

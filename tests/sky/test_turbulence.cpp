@@ -1,4 +1,4 @@
-#include "core/sky/turbulence.h"
+#include "core/sky/air/turbulence.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/sky/scintillation.h"
+#include "core/sky/air/scintillation.h"
 
 namespace dmise {
 namespace {

@@ -29,7 +29,7 @@ def main(directory):
                           (["nodes/own/mcap_file.h", sources[1]], sources[1:]), (["core/base/error.h"], sources[1:])):
         code, said, read = tidy(directory, *names)
         assert (code, read) == (0, wanted), (names, code, said, read)
-    for name in ("README.md", "launch/node_makers.h"):
+    for name in ("README.md", "launch/run/node_makers.h"):
         code, said, read = tidy(directory, name)
         assert code == 2 and not read and said.startswith(f"tidy: {name}: no source") and said.count("\n") == 1, said
 

@@ -5,12 +5,12 @@
 #include <map>
 #include <set>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 #include "core/fusion/fusion.h"
 #include "core/fusion/scheduler.h"
 #include "core/orbit/interpolation.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 #include "tests/support/fusion_trial.h"
 
 namespace dmise {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 #include "core/frames/earth_orientation.h"
 #include "core/photometry/diffuse_sphere.h"
-#include "core/sky/sun_moon.h"
+#include "core/sky/places/sun_moon.h"
 
 namespace dmise {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/fusion/catalogue_prediction.h"
 #include "core/fusion/sensor_frame.h"
 #include "core/products/track.h"
-#include "core/sky/shadow.h"
+#include "core/sky/bodies/shadow.h"
 
 namespace dmise {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 
 namespace dmise::test {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/simd_level.h"
+#include "core/base/numeric/simd_level.h"
 
 namespace dmise::test {
 

@@ -6,7 +6,7 @@
 
 #include "core/base/image.h"
 #include "core/base/units.h"
-#include "core/detection/star_motion.h"
+#include "core/detection/known/star_motion.h"
 #include "core/products/frame_header.h"
 
 namespace dmise::simulated {

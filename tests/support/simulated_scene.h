@@ -2,12 +2,10 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/detection/background.h"
-#include "core/detection/detection_limits.h"
-#include "core/detection/make_report.h"
-#include "core/detection/psf.h"
-#include "core/detection/scene.h"
-#include "core/detection/star_motion.h"
+#include "core/detection/frame_scene.h"
+#include "core/detection/known/star_motion.h"
+#include "core/detection/pixels/background.h"
+#include "core/detection/pixels/detection_limits.h"
 #include "core/products/frame_header.h"
 
 namespace dmise::simulated {
@@ -19,14 +17,7 @@ struct SimulatedScene {
   Threads one;
   Background background{counts, detection_limits::background_cell_px, one};
   StarMotion stars{header, counts.columns, counts.rows};
-  Scene scene{counts,
-              background,
-              stars,
-              header.gain_e_per_dn,
-              lowest_clipped_dn(header),
-              sigma_with_pixel(header.psf_fwhm_px),
-              false,
-              PsfField::gaussian(header.psf_fwhm_px)};
+  Scene scene = frame_scene(counts, background, stars, header);
 
   SimulatedScene(FrameHeader header_, CountImage counts_)
       : header(std::move(header_)), counts(std::move(counts_)) {}

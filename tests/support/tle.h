@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/units.h"
-#include "core/orbit/elements.h"
+#include "core/orbit/elements/elements.h"
 
 // The least that turns well-formed TLE lines into mean elements; the product's reader does the
 // rest.

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/forces/forces.h"
 #include "core/tracking/angle_observation.h"
-#include "core/tracking/forces.h"
 #include "core/tracking/orbit_state.h"
 
 namespace dmise {

@@ -1,6 +1,5 @@
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,7 +9,7 @@
 
 #include "core/config/make_clock.h"
 #include "orbit-node/load_objects.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "sensors/frame/make_sensor.h"
 #include "sensors/survey/sensor_survey.h"
 
 namespace dmise::test {
@@ -30,9 +29,9 @@ struct Network {
           const std::string& objects = "[{catalogue: demo}]", int thread_count = 2)
       : threads(thread_count) {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
-    directory = std::filesystem::path(testing::TempDir()) /
-                ("survey-" + std::to_string(getpid()) + "-" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name());
+    directory =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("survey-") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(directory);
     std::ofstream file(directory / "scenario.yaml");
     file << "simulation: " << simulation << "\nobjects: " << objects

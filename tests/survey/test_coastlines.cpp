@@ -1,4 +1,4 @@
-#include "launch/coastlines.h"
+#include "launch/survey/coastlines.h"
 
 #include <gtest/gtest.h>
 

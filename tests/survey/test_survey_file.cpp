@@ -1,6 +1,6 @@
 #include "sensors/survey/survey_file.h"
 
-#include "core/base/text_file.h"
+#include "core/base/files/text_file.h"
 #include "tests/survey/network.h"
 
 namespace dmise {

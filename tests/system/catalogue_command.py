@@ -1,4 +1,4 @@
-"""`dmise catalogue info | states | synth`: every format, frame, flag and refusal, against python3-sgp4 and ERFA.
+"""`dmise catalogue info | states | synth | facts`: every format, frame, flag and refusal, against python3-sgp4 and ERFA.
 
     catalogue_command.py DMISE
 """
@@ -112,6 +112,19 @@ def test(binary, directory):
                             (("synth", "--objects", "0"), "--objects: "),
                             (("synth", "--objects", "1000001"), "--objects: "),
                             (("synth", "--objects", "400000", "--format", "3le"), "--objects: a TLE has numbers")):
+        check(said in dmise(*arguments, code=2)[1], f"refused: {said}")
+
+    # Facts of somebody's table: a scenario that names them sees the sizes.
+    table = directory / "sizes.csv"
+    table.write_text("OBJECT,RCS\n25544,26.0\n29155,x\n5,\n")
+    _, err = dmise("facts", table, "--id", "OBJECT", "--size", "RCS", "--is", "rcs", "--unit", "dBsm", "--out", directory / "facts.csv")
+    check('sizes.csv:3: RCS is not a number, got "x" (left out)' in err, "a bad row is named with its column")
+    check("3 rows: facts of 1 objects, 1 unknown, 1 left out" in err, "rows are counted")
+    check((directory / "facts.csv").read_text().splitlines()[1].startswith("25544,,398.107"), "dBsm are square metres")
+    for arguments, said in ((("facts", table, "--id", "OBJECT", "--size", "HBR"), "sizes.csv:1: no column HBR, of OBJECT, RCS"),
+                            (("facts", table, "--id", "OBJECT", "--size", "RCS", "--unit", "m2"), "a length is in m, cm or mm"),
+                            (("facts", table, "--id", "OBJECT", "--size", "RCS", "--unit", "ft"), "--unit: must be one of m, cm, mm, m2, dBsm"),
+                            (("facts", table, "--id", "OBJECT"), "sizes.csv: nothing is known of any object")):
         check(said in dmise(*arguments, code=2)[1], f"refused: {said}")
 
     # Populations: the same seed the same bytes, numbers up to a million, readable by others.

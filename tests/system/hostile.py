@@ -21,6 +21,9 @@ from hostile.target import Target
 from harness import PATIENCE_S, Failure, Run, check, check_same, tell_figures
 
 
+SILENT_AFTER_S = 10.0  # longer than a busy machine is silent
+
+
 class Field:
     """Where cases are played: binary, directory, keys and the undisturbed run."""
 
@@ -41,7 +44,7 @@ class Field:
 
     def play(self, case):
         """Failure when anything does not hold. Returns figures."""
-        scenario = write_scene(self.directory, "fail", case.wall_s)
+        scenario = write_scene(self.directory, "fail", case.wall_s, SILENT_AFTER_S)
         out = self.directory / case.name
         keys = self.keys(scenario, case.hosts) if case.keys else None
         with Target(self.binary, scenario, out, keys, case.hosts) as target:

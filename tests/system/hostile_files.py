@@ -95,6 +95,7 @@ def hostile_inputs(binary, directory):
     fifo = directory / "fifo"
     for what in [fifo, "/dev/zero", "/dev/tty", "/proc/self/environ", "/proc/kmsg", directory]:
         refused(directory, [binary, "detect", what], f"detect {what}", str(what))
+        refused(directory, [binary, "detect", "--sequence", what, what, what], f"detect --sequence {what}", str(what))
         refused(directory, [binary, "catalogue", "info", what], f"catalogue info {what}", str(what))
     for key, line in [("objects", "objects: [{catalogue: %s}]\n"), ("stars", "stars: {catalogue: %s}\n")]:
         good = write_scenario(directory).read_text().splitlines(keepends=True)

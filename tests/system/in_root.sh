@@ -24,6 +24,7 @@ in_namespaces() {
 # there. Uses `checkout`, `say`, `die`, `suite` if it is set and setup_proof.sh; sets `base`, its archive.
 prove_in_bare_root() {
   [[ ${DMISE_BARE_ROOT:-0} == 1 ]] || { say "skipped: set DMISE_BARE_ROOT=1 to spend $1 on it"; exit 77; }
+  [[ -z ${suite-} || " ${DMISE_BARE_RELEASES-$suite} " == *" $suite "* ]] || { say "skipped: not among DMISE_BARE_RELEASES"; exit 77; }
   ((EUID == 0)) || die "needs root"
   command -v debootstrap >/dev/null || die "needs debootstrap"
   mkdir -p "$proofs"

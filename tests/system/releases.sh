@@ -3,6 +3,7 @@
 #
 #   releases.sh CHECKOUT
 set -euo pipefail
+unset DMISE_NO_SETUP
 
 checkout=$(readlink -f "$1") lists=$(readlink -f "$1")/launch/setup
 work=$(mktemp -d -t dmise-releases-XXXXXX)

@@ -1,4 +1,4 @@
-#include "core/tracking/admissible_region.h"
+#include "core/tracking/initial/admissible_region.h"
 
 #include <gtest/gtest.h>
 

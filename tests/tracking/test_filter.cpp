@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
-#include "core/tracking/initial_orbit.h"
+#include "core/tracking/initial/initial_orbit.h"
 #include "tests/support/tracking_trial.h"
 
 namespace dmise {

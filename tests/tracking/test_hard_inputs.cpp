@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 #include "core/tracking/filter.h"
-#include "core/tracking/initial_orbit.h"
-#include "core/tracking/lambert.h"
+#include "core/tracking/initial/initial_orbit.h"
+#include "core/tracking/initial/lambert.h"
 #include "tests/support/tracking_trial.h"
 
 namespace dmise {

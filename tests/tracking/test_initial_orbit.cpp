@@ -1,4 +1,4 @@
-#include "core/tracking/initial_orbit.h"
+#include "core/tracking/initial/initial_orbit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/tracking/lambert.h"
+#include "core/tracking/initial/lambert.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/base/rng.h"
+#include "core/base/numeric/rng.h"
 #include "core/base/units.h"
 #include "core/orbit/two_body.h"
 

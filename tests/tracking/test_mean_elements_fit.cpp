@@ -6,8 +6,8 @@
 
 #include "core/base/units.h"
 #include "core/frames/earth_orientation.h"
-#include "core/orbit/catalogue.h"
-#include "core/orbit/sgp4_batch.h"
+#include "core/orbit/elements/catalogue.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "core/tracking/triangulate.h"
+#include "core/tracking/initial/triangulate.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <exception>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
+#include "core/base/files/json.h"
 #include "core/tracking/filter.h"
-#include "core/tracking/initial_orbit.h"
+#include "core/tracking/initial/initial_orbit.h"
 #include "tests/support/tracking_trial.h"
 
 namespace dmise {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/base/units.h"
-#include "core/orbit/synthetic_catalogue.h"
+#include "core/orbit/sgp4/synthetic_catalogue.h"
 #include "tests/visibility/watch.h"
 
 namespace dmise {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/orbit/catalogue.h"
+#include "core/orbit/elements/catalogue.h"
 #include "core/time/iso8601.h"
 #include "core/visibility/passes.h"
 #include "tests/support/data.h"

@@ -203,6 +203,15 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.star_like = index % 3;
   d.excluded = index % 2 == 0;
   if (index % 2) return d;
+  d.light_curve =
+      LightCurve{.bin_px = 2.5,
+                 .along_px = {n.in(0, 2), n.in(2, 4)},
+                 .time_s = {n.in(0, 1), n.in(1, 2)},
+                 .light_e = {n.in(-10, 1e5), n.in(-10, 1e5)},
+                 .sigma_e = {n.in(1, 100), n.in(1, 100)},
+                 .correlation = {n.in(-0.5, 0), n.in(-0.5, 0)},
+                 .period = LightPeriod{n.in(10, 20), n.in(0, 1), n.in(1, 2), n.in(0, 0.1),
+                                       n.in(0, 1), n.in(0, 0.1), 3, n.in(0, 1e-3)}};
   d.range_m = n.in(1e5, 1e7), d.range_sigma_m = n.in(1, 100);
   d.range_rate_m_per_s = n.in(-8e3, 8e3), d.range_rate_sigma_m_per_s = n.in(0.1, 10);
   return d;
@@ -229,6 +238,7 @@ Truth truth(Numbers& n) {
   t.in_frame = true;
   t.whole = n.in(0, 1) > 0.5;
   t.resolved = n.in(0, 1) > 0.5;
+  t.defocus_disc_px = n.in(0, 100);
   t.camera_from_gcrs = Quaternion{0.5, -0.5, 0.5, 0.5};
   return t;
 }

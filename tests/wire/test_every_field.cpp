@@ -6,10 +6,8 @@
 #include <map>
 #include <memory>
 
-#include "core/detection/detection_json.h"
 #include "core/products/frame_report.h"
-#include "core/products/task_json.h"
-#include "core/products/track_json.h"
+#include "core/products/product_json.h"
 #include "dmise/v1/detection.pb.h"
 #include "dmise/v1/environment.pb.h"
 #include "dmise/v1/frame.pb.h"

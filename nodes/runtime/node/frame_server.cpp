@@ -25,11 +25,13 @@ constexpr int unread_ms = 30'000;  // after which the system disconnects a reade
 struct UnderWay {
   FrameBytes fits;
   std::shared_ptr<std::atomic<std::int64_t>> total;
+  std::shared_ptr<std::atomic<int>> unread;  // by its reader
 };
 
 void release(void*, void* hint) {
   auto* sent = static_cast<UnderWay*>(hint);
   *sent->total -= std::int64_t(sent->fits.bytes.size());
+  --*sent->unread;
   delete sent;
 }
 
@@ -42,7 +44,7 @@ ConnectionLimits limits() {
 
 zmq::socket_t FrameServer::make_socket_of(zmq::context_t& context) {
   zmq::socket_t socket = make_socket(context, zmq::socket_type::router, max_question_bytes);
-  socket.set(zmq::sockopt::sndhwm, 2);
+  socket.set(zmq::sockopt::sndhwm, FrameServer::most_unread);
   socket.set(zmq::sockopt::rcvhwm, 4);
   socket.set(zmq::sockopt::tcp_maxrt, unread_ms);
   socket.set(zmq::sockopt::linger, 500);  // for last answers
@@ -106,7 +108,10 @@ void FrameServer::receive_requests() {
         fault_of(request))
       continue;
     asked_ = now();
-    readers_[message[0].to_string()] = {++requests_, true, request};
+    Reader& reader = readers_[message[0].to_string()];
+    reader.order = ++requests_;
+    reader.waits = true;
+    reader.request = request;
     if (readers_.size() > remembered_readers)
       readers_.erase(std::ranges::min_element(
           readers_, {}, [](const auto& reader) { return reader.second.order; }));
@@ -117,29 +122,29 @@ void FrameServer::answer_requests() {
   for (auto at = readers_.begin(); at != readers_.end();) {
     auto& [peer, reader] = *at;
     std::optional<KeptFrames::Answer> answer;
-    if (reader.waits && *under_way_bytes_ < most_under_way_bytes)
+    if (reader.waits && *reader.unread < most_unread && *under_way_bytes_ < most_under_way_bytes)
       answer = frames_.answer(reader.request, run_id_);
     if (!answer) {
       ++at;
       continue;
     }
     reader.waits = false;
-    send(peer, *answer);
+    send(peer, reader, *answer);
     // `finish` does not wait for a reader that knows that the frames are over.
     at = answer->head.status() == v1::FrameAnswer::STATUS_OVER ? readers_.erase(at) : std::next(at);
   }
 }
 
-void FrameServer::send(const std::string& peer, const KeptFrames::Answer& answer) {
-  // ZeroMQ silently drops an answer to a reader that has not read those before.
+void FrameServer::send(const std::string& peer, Reader& reader, const KeptFrames::Answer& answer) {
   const bool sent = answer.head.status() == v1::FrameAnswer::STATUS_SENT;
   socket_.send(zmq::buffer(peer), zmq::send_flags::sndmore);
   socket_.send(to_frame(answer.head), sent ? zmq::send_flags::sndmore : zmq::send_flags::none);
   if (!sent) return;
   const std::string_view bytes = answer.fits.bytes;
   *under_way_bytes_ += std::int64_t(bytes.size());
+  ++*reader.unread;
   zmq::message_t frame(const_cast<char*>(bytes.data()), bytes.size(), release,
-                       new UnderWay{answer.fits, under_way_bytes_});
+                       new UnderWay{answer.fits, under_way_bytes_, reader.unread});
   socket_.send(frame, zmq::send_flags::none);
 }
 

@@ -20,6 +20,8 @@ class FrameServer {
   static constexpr int most_readers = 64;  // connections; beyond, the oldest are closed
   /// Answers under way, of files in memory; requests beyond wait.
   static constexpr std::int64_t most_under_way_bytes = std::int64_t(256) << 20;
+  /// Answers with a frame that one reader has not read; its next request waits.
+  static constexpr int most_unread = 2;
 
   /// Settings of the socket, before it is bound.
   static zmq::socket_t make_socket_of(zmq::context_t& context);
@@ -40,11 +42,12 @@ class FrameServer {
     std::uint64_t order = 0;  // of the request
     bool waits = false;
     v1::FrameRequest request;
+    std::shared_ptr<std::atomic<int>> unread = std::make_shared<std::atomic<int>>(0);
   };
   void run();
   void receive_requests();
   void answer_requests();
-  void send(const std::string& peer, const KeptFrames::Answer& answer);
+  void send(const std::string& peer, Reader& reader, const KeptFrames::Answer& answer);
   void look_at_connections();
 
   zmq::socket_t socket_;

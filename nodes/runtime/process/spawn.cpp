@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
+#include "core/base/files/regular_file.h"
 
 namespace dmise {
 namespace {

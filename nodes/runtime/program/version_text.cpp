@@ -1,6 +1,6 @@
 #include "nodes/runtime/program/version_text.h"
 
-#include "core/base/simd_level.h"
+#include "core/base/numeric/simd_level.h"
 #include "dmise_commit.h"
 
 namespace dmise {

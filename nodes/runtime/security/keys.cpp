@@ -14,8 +14,8 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/files/text_file.h"
 #include "core/base/printable.h"
-#include "core/base/text_file.h"
 
 namespace dmise {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "core/config/schema.h"
-#include "core/orbit/sgp4_batch.h"
-#include "core/orbit/tle.h"
-#include "core/sky/sun_moon.h"
+#include "core/orbit/elements/tle.h"
+#include "core/orbit/sgp4/sgp4_batch.h"
+#include "core/sky/places/sun_moon.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;

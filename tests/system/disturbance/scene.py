@@ -39,13 +39,13 @@ CAMERAS = {
 }
 
 
-def write_scene(directory, policy, wall_s):
+def write_scene(directory, policy, wall_s, silent_after_s=SILENT_AFTER_S):
     """`wall_s`: seconds that an undisturbed run takes; 0: as fast as it can. Returns the scenario's path."""
     directory.mkdir(parents=True, exist_ok=True)
     for name, camera in CAMERAS.items():
         (directory / f"{name}.yaml").write_text(CAMERA.format(name=name, **camera))
     path = directory / f"{policy}-{wall_s:g}.yaml"
     path.write_text(SCENARIO.format(
-        duration_s=TICKS * TICK_S, tick_s=TICK_S, policy=policy, silent_after_s=SILENT_AFTER_S,
+        duration_s=TICKS * TICK_S, tick_s=TICK_S, policy=policy, silent_after_s=silent_after_s,
         real_time=TICKS * TICK_S / wall_s if wall_s else 0))
     return path

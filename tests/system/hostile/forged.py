@@ -10,6 +10,7 @@ from hostile.memory import title
 from hostile.ports import listening
 from hostile.wire import node_pb2, resealed, sealed, state_pb2, time_pb2
 
+MOST_HEARD = 100  # at one look: the run's nodes pass on what is forged, so that the forger hears itself
 KINDS = [value for name, value in node_pb2.Kind.items() if name != "KIND_UNSPECIFIED"]
 FAR = 10**9
 
@@ -46,9 +47,9 @@ class Forger:
         self.send(sealed(topic, payload, **(facts | fields)))
 
     def hear(self):
-        """Messages that an observer has heard since."""
+        """Messages that an observer has heard since, `MOST_HEARD` at most."""
         messages = []
-        while self.heard.poll(1):
+        while len(messages) < MOST_HEARD and self.heard.poll(1):
             messages.append(self.heard.recv_multipart())
         return messages
 

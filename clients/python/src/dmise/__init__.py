@@ -16,6 +16,8 @@ import importlib
 import sys
 from typing import Any
 
+from .late_imports import importing
+
 __version__ = "1.0.0"
 _NEEDED = {"google": "protobuf", "google.protobuf": "protobuf", "numpy": "numpy", "zmq": "pyzmq"}
 # The names of each module; what a type checker sees of them is in __init__.pyi.
@@ -37,7 +39,7 @@ _NAMES = {
     "propagation": "CatalogueStates propagate",
     "recorder": "Recorded record",
     "recording": "Recording open_recording",
-    "records": "ArrayLike Detection FrameReport Record Task Track Truth Wcs WcsRefraction",
+    "records": "ArrayLike Detection FrameReport LightCurve LightPeriod Record Task Track Truth Wcs WcsRefraction",
     "replayer": "Replay",
     "runs": "Run open_run",
     "scenario_text": "to_yaml",
@@ -58,7 +60,8 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:
-        module = importlib.import_module(f".{_MODULE_OF.get(name, name)}", __name__)
+        with importing:
+            module = importlib.import_module(f".{_MODULE_OF.get(name, name)}", __name__)
     except ImportError as missing:
         if missing.name not in _NEEDED:
             raise

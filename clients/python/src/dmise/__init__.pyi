@@ -19,7 +19,8 @@ from .own_tracker import Tracks as Tracks, tracker as tracker
 from .propagation import CatalogueStates as CatalogueStates, propagate as propagate
 from .recorder import Recorded as Recorded, record as record
 from .recording import Recording as Recording, open_recording as open_recording
-from .records import ArrayLike as ArrayLike, Detection as Detection, FrameReport as FrameReport, Record as Record
+from .records import ArrayLike as ArrayLike, Detection as Detection, FrameReport as FrameReport
+from .records import LightCurve as LightCurve, LightPeriod as LightPeriod, Record as Record
 from .records import Task as Task, Track as Track, Truth as Truth, Wcs as Wcs, WcsRefraction as WcsRefraction
 from .replayer import Replay as Replay
 from .runs import Run as Run, open_run as open_run

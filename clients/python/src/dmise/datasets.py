@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from .late_imports import importing
 from .records import ArrayLike
 from .scenario_text import Scenario
 
@@ -135,7 +136,8 @@ class Dataset:
         """A file of the data set, of bytes."""
         if isinstance(self.directory, pathlib.Path):
             return open(self.directory / name, "rb")
-        from .shard_store import file_system
+        with importing:
+            from .shard_store import file_system
 
         files, root = file_system(self._url, self._options)  # one for each process, of fsspec's own cache
         return files.open(f"{root}/{name}", "rb")
@@ -178,7 +180,8 @@ def write_shards(scenario: Scenario, seeds: range, url: str, *, per_shard: int =
     made; one with more seeds adds them. Returns whether the data set is complete. Raises `ScenarioError` for a scenario that is
     not valid and for a URL that has another data set, ImportError if the file system's package is missing.
     """
-    from .shard_store import write
+    with importing:
+        from .shard_store import write
 
     return write(scenario, seeds, url, per_shard, shard, workers, storage_options)
 
@@ -210,7 +213,8 @@ def map_seed(scenario: Scenario, seed: int) -> list[Sample]:
     `pool.imap(functools.partial(map_seed, "dataset.yaml"), range(1, 501))`. What the scenario names is read once in a
     process. Raises `ScenarioError` as `Simulation`.
     """
-    from .sample_makers import samples_of
+    with importing:
+        from .sample_makers import samples_of
 
     return [Sample(key, image, mask, json.loads(labels)) for key, image, mask, labels in samples_of(scenario, seed)]
 
@@ -225,7 +229,8 @@ def __getattr__(name: str) -> Any:
     """`FrameStream` looks for torch, which takes seconds to import, when it is used."""
     if name != "FrameStream":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .frame_stream import FrameStream
+    with importing:
+        from .frame_stream import FrameStream
 
     globals()[name] = FrameStream
     return FrameStream

@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from .convert import numbers_of
-from .records import Record, Wcs, WcsRefraction
+from .records import LightCurve, LightPeriod, Record, Wcs, WcsRefraction
 
 _ARCSEC = math.pi / 648000.0
 # What the end of a name becomes, and the factor of the value.
 _UNITS = (("_arcsec_per_s", "_rad_per_s", _ARCSEC), ("_arcsec2", "_rad2", _ARCSEC ** 2),
           ("_arcsec", "_rad", _ARCSEC), ("_deg", "_rad", math.pi / 180.0),
           ("_gcrs_m_per_s", "_m_per_s", 1.0), ("_gcrs_m", "_m", 1.0), ("_gcrs", "", 1.0))
+_PARTS: dict[str, type[Record]] = {"light_curve": LightCurve, "period": LightPeriod}
 _PLANES = ("TAN", "ARC", "ZEA", "STG", "ZPN")
 _LENSES = ("gnomonic", "equidistant", "equisolid", "stereographic", "kannala_brandt", "brown_conrady")
 
@@ -42,6 +43,8 @@ def record_of_line(values: dict[str, Any], cls: type[Record], start: datetime.da
     for key, value in values.items():
         if key == "wcs":
             known[key] = _wcs(value) if value else None
+        elif key in _PARTS and value is not None:
+            known[key] = record_of_line(value, _PARTS[key], start)
         elif value is not None:
             for name, part in _named(key, value, fields):
                 known[name] = part

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import dynamics
 from .errors import InputError
+from .late_imports import importing
 from .records import Floats
 
 
@@ -55,7 +56,8 @@ def propagate(what: Any, times: Any, pole: Any = None, *, axes: str = "gcrs",
     """
     if not isinstance(what, (str, os.PathLike)):
         return dynamics.propagate(what, times, pole)
-    from .engine import core
+    with importing:
+        from .engine import core
 
     if isinstance(what, str) and "\n" in what:
         catalogue = core.Catalogue.of_text(what, "catalogue")

@@ -44,6 +44,37 @@ class Record:
 
 
 @dataclass(eq=False)
+class LightPeriod(Record):
+    """A period in the light of a streak."""
+    period_px: float = 0.0  # along the line
+    period_sigma_px: float = 0.0
+    period_s: float = 0.0  # by the time that the object takes from end to end
+    period_sigma_s: float = 0.0
+    amplitude: float = 0.0  # half of most less least light, over the mean light
+    amplitude_sigma: float = 0.0
+    harmonics: int = 0
+    false_alarm: float = 0.0  # probability
+
+
+@dataclass(eq=False)
+class LightCurve(Record):
+    """Light of a streak over time, in bins along its line, from end 1 to end 2."""
+    bin_px: float = 0.0
+    along_px: Floats = field(default_factory=no_numbers)  # of the middle of a bin, from end 1
+    time_s: Floats = field(default_factory=no_numbers)  # after the start of the exposure
+    light_e: Floats = field(default_factory=no_numbers)
+    sigma_e: Floats = field(default_factory=no_numbers)
+    correlation: Floats = field(default_factory=no_numbers)  # of the errors of a bin and of the next one
+    period: LightPeriod | None = None
+
+    @property
+    def covariance_e2(self) -> Floats:
+        """Of the bins' light; without the small covariances of bins that are no neighbours."""
+        both = self.correlation[:-1] * self.sigma_e[:-1] * self.sigma_e[1:]
+        return np.diag(self.sigma_e ** 2) + np.diag(both, 1) + np.diag(both, -1)
+
+
+@dataclass(eq=False)
 class Detection(Record):
     """One source found in one frame, from its pixels and header alone."""
     id: str = ""
@@ -99,6 +130,7 @@ class Detection(Record):
     range_sigma_m: float | None = None
     range_rate_m_per_s: float | None = None
     range_rate_sigma_m_per_s: float | None = None
+    light_curve: LightCurve | None = None  # of a streak, where the detector was asked for it
 
     @property
     def time_utc(self) -> datetime.datetime:
@@ -249,6 +281,7 @@ class Truth(_Exposure):
     camera_from_gcrs: Floats = field(default_factory=no_numbers)
     true_position_m: Floats = field(default_factory=no_numbers)
     true_velocity_m_per_s: Floats = field(default_factory=no_numbers)
+    defocus_disc_px: float = 0.0
 
 
 @dataclass(eq=False)

@@ -25,7 +25,7 @@ class Scenario(TypedDict, total=False):
 
     simulation: Required[Simulation]
     """The run."""
-    objects: Sequence[Catalogue | Object]
+    objects: Sequence[Catalogue | Constellation | Fragments | Object]
     """Catalogues of objects, and objects of one's own."""
     nodes: Sequence[Node]
     """Programs of one's own that take part in the run: they move objects, detect in the frames of sensors, are sensors, or
@@ -115,28 +115,107 @@ class Catalogue(TypedDict, total=False):
 Models = Mapping[str, "Text"]
 
 
-class Object(TypedDict, total=False):
-    """An object of the scenario's own."""
+class Constellation(TypedDict, total=False):
+    """Satellites of a constellation, or of one launch. `walker` or `train`."""
 
-    name: Required[Text]
-    """A unique name of 1 to 64 characters."""
-    catalogue_number: int
-    """Replaces the catalogue's object of this number. By default that of its element set, else 990000001 and onwards."""
-    motion: Required[Motion]
-    """How it moves."""
-    attitude: Literal["nadir", "sun_tracking"] | Attitude
-    """How it is turned: towards the Earth, the Sun, or as given."""
-    panel: Panel
-    """The panel of its geometry that faces the Sun."""
-    geometry: Geometry
-    """Its shape; needs an attitude."""
-    model: Text
-    """A shipped model (`dmise list models`) or a file of one, in place of geometry and panel. Its attitude holds unless the
-    object has one."""
+    walker: Walker
+    """Its planes and satellites."""
+    train: Train
+    """Satellites behind each other."""
+    name: Text
+    """Unique, of 1 to 48 characters; its satellites are NAME-PLANE-PLACE, of a train NAME-PLACE. Default: `walker` or
+    `train`."""
+    models: Text | Models
+    """Models of families of objects, as of a catalogue."""
     radius_m: float
     """Radius of the diffuse sphere that is seen without a shape [m]. Default: 1."""
     albedo: float
     """Its albedo. Default: 0.2."""
+
+
+class Walker(TypedDict, total=False):
+    """A constellation of circular orbits T/P/F (Walker 1984): mean elements for SGP4, without drag."""
+
+    total: int
+    """Satellites T; a multiple of the planes."""
+    per_plane: int
+    """Satellites in each plane, in place of the total."""
+    planes: Required[int]
+    """Planes P."""
+    phasing: int
+    """F, below P: a satellite is F * 360 deg / T ahead of the one in the plane to the west. Default: 0."""
+    raan_spread_deg: float
+    """Range over which the nodes are spread [deg]: 360 is a Walker delta, 180 a star. Default: 360."""
+    height_m: float
+    """Semi-major axis less 6378137 m [m]."""
+    semi_major_axis_m: float
+    """Semi-major axis [m], in place of the height."""
+    inclination_deg: Required[float]
+    """Inclination [deg]."""
+    raan_deg: float
+    """Right ascension of the first node [deg], in TEME of the epoch. Default: 0."""
+    argument_of_latitude_deg: float
+    """The first satellite's angle from its node [deg]. Default: 0."""
+    epoch: Utc
+    """UTC of the elements. Default: start of the run."""
+
+
+class Train(TypedDict, total=False):
+    """Satellites behind each other in one plane, as after a launch."""
+
+    count: Required[int]
+    """Satellites."""
+    spacing_s: Required[float]
+    """Time after which the next one passes the same latitude [s]."""
+    height_m: float
+    """Semi-major axis less 6378137 m [m]."""
+    semi_major_axis_m: float
+    """Semi-major axis [m], in place of the height."""
+    inclination_deg: Required[float]
+    """Inclination [deg]."""
+    raan_deg: float
+    """Right ascension of the first node [deg], in TEME of the epoch. Default: 0."""
+    argument_of_latitude_deg: float
+    """The first satellite's angle from its node [deg]. Default: 0."""
+    epoch: Utc
+    """UTC of the elements. Default: start of the run."""
+
+
+class Fragments(TypedDict, total=False):
+    """Pieces of an object that has broken up."""
+
+    breakup: Required[Breakup]
+    """What broke, when and how."""
+    name: Text
+    """Unique, of 1 to 48 characters; the fragments are NAME-NUMBER, the longest first. Default: breakup."""
+    albedo: float
+    """Albedo of the spheres that they are. Default: 0.175."""
+
+
+class Breakup(TypedDict, total=False):
+    """Pieces of an object that has exploded or collided, by NASA's standard breakup model (Johnson et al. 2001)."""
+
+    parent: Required[Text | Motion]
+    """The name or number of an object of the scenario, which stays in the scene, or a motion as of an object of one's own."""
+    at: Utc
+    """UTC of the breakup, at or before the start of the run. Default: start of the run."""
+    kind: Required[Literal["explosion", "collision"]]
+    """What broke it."""
+    structure: Literal["upper_stage", "spacecraft"]
+    """Which area-to-mass ratios pieces over 8 cm have. Default: `upper_stage` of an explosion, `spacecraft` of a
+    collision."""
+    mass_kg: Required[float]
+    """Mass of the parent [kg]."""
+    scale: float
+    """S of an explosion: 1 is an upper stage of 600 to 1000 kg. Default: 1."""
+    projectile_mass_kg: float
+    """Mass of what hit it [kg]; needed of a collision."""
+    relative_speed_m_per_s: float
+    """Speed at which that hit it [m/s]; needed of a collision."""
+    least_length_m: float
+    """Characteristic length of the smallest pieces [m]. Default: 0.1."""
+    seed: int
+    """Seed of the pieces. Default: that of the scenario."""
 
 
 class Motion(TypedDict, total=False):
@@ -146,6 +225,17 @@ class Motion(TypedDict, total=False):
     """A conic about the Earth's centre."""
     oem: Text
     """A CCSDS OEM beside the scenario."""
+    sp3: Text
+    """An SP3-c or SP3-d beside the scenario."""
+    satellite: Text
+    """The satellite of the SP3, such as L71; needed if it has several."""
+    numerical: Numerical
+    """A state from which it flies by numerical integration."""
+    forces: Forces
+    """What acts on it; with `numerical` or `manoeuvres`."""
+    manoeuvres: Sequence[Manoeuvre]
+    """Changes of its velocity, in order; with numerical, two_body, sgp4, oem or sp3. From the first on the object flies by
+    numerical integration."""
     fixed: Fixed
     """A constant place."""
     track: Text
@@ -154,6 +244,8 @@ class Motion(TypedDict, total=False):
     """In east, north and up of the scenario's origin."""
     sgp4: Sgp4
     """One element set."""
+    proximity: Proximity
+    """Near another object."""
     node: Text
     """A node of `nodes` says where it is at every tick."""
 
@@ -161,10 +253,10 @@ class Motion(TypedDict, total=False):
 class TwoBody(TypedDict, total=False):
     """A conic about the Earth's centre, in GCRS axes: by elements, or by position and velocity."""
 
-    epoch: Utc
-    """UTC of the elements. Default: start of the run."""
     gm_m3_per_s2: float
     """Gravity of the centre [m^3/s^2]. Default: 3.986004415e14."""
+    epoch: Utc
+    """UTC of the elements. Default: start of the run."""
     position_m: Sequence[float]
     """Position at the epoch [m]."""
     velocity_m_per_s: Sequence[float]
@@ -185,6 +277,76 @@ class TwoBody(TypedDict, total=False):
     """True anomaly [deg]. Default: 0."""
     mean_anomaly_deg: float
     """Mean anomaly [deg], in place of the true one."""
+
+
+class Numerical(TypedDict, total=False):
+    """A state in GCRS axes, by osculating elements or by position and velocity, from which the object flies by numerical
+    integration."""
+
+    epoch: Utc
+    """UTC of the elements. Default: start of the run."""
+    position_m: Sequence[float]
+    """Position at the epoch [m]."""
+    velocity_m_per_s: Sequence[float]
+    """Velocity at the epoch [m/s]."""
+    semi_major_axis_m: float
+    """Semi-major axis [m]; of a closed orbit."""
+    periapsis_m: float
+    """Least distance from the Earth's centre [m], in place of the axis."""
+    eccentricity: float
+    """Eccentricity; needed with elements."""
+    inclination_deg: float
+    """Inclination [deg]; needed with elements."""
+    raan_deg: float
+    """Right ascension of the ascending node [deg]. Default: 0."""
+    argument_of_perigee_deg: float
+    """Argument of perigee [deg]. Default: 0."""
+    true_anomaly_deg: float
+    """True anomaly [deg]. Default: 0."""
+    mean_anomaly_deg: float
+    """Mean anomaly [deg], in place of the true one."""
+
+
+class Forces(TypedDict, total=False):
+    """What acts on an object that flies by numerical integration."""
+
+    gravity_degree: int
+    """Degree and order of the Earth's gravity, EGM2008; 0: a point mass. Default: 20."""
+    sun_moon: Switch
+    """Attraction of Sun and Moon, and of the tides that they raise in the solid Earth. Default: on."""
+    area_to_mass_m2_per_kg: float
+    """Cross-section over mass [m^2/kg]. Without it neither air nor sunlight acts."""
+    drag: Switch
+    """Drag of the air. Default: on."""
+    drag_coefficient: float
+    """Drag coefficient. Default: 2.2."""
+    radiation: Switch
+    """Pressure of sunlight outside the Earth's shadow. Default: on."""
+    radiation_coefficient: float
+    """Radiation pressure coefficient: 1 absorbs all light, 2 throws it straight back. Default: 1.3."""
+
+
+class Manoeuvre(TypedDict, total=False):
+    """A change of velocity at once, or a burn of constant thrust. Axes are radial (away from the Earth's centre), transverse
+    (in the plane of the orbit, forwards) and normal."""
+
+    at: Utc
+    """UTC of the change, or of the start of the burn."""
+    at_s: float
+    """The same from the start of the run [s], in place of `at`."""
+    delta_v_rtn_m_per_s: Sequence[float]
+    """Change of velocity [m/s]: radial, transverse, normal."""
+    thrust_n: float
+    """Thrust [N], in place of it."""
+    mass_kg: float
+    """Mass of the object at the start of the burn [kg]; needed with thrust."""
+    duration_s: float
+    """Length of the burn [s]; needed with thrust."""
+    direction_rtn: Sequence[float]
+    """Direction of the acceleration: radial, transverse, normal, of any length. It turns with the axes; needed with
+    thrust."""
+    specific_impulse_s: float
+    """Specific impulse [s], by which a burn uses mass. By default the mass stays."""
 
 
 class Fixed(TypedDict, total=False):
@@ -223,6 +385,87 @@ class Sgp4(TypedDict, total=False):
     """Second line of a TLE."""
 
 
+class Proximity(TypedDict, total=False):
+    """Motion near another object, the chief, in its radial (up), transverse (ahead) and normal axes. One of `natural`,
+    `circumnavigation`, `hold_rtn_m`, `approach`."""
+
+    of: Required[Text]
+    """Name or number of the chief, an object of the scenario."""
+    natural: Natural
+    """Free motion from a state."""
+    circumnavigation: Circumnavigation
+    """Free motion on an ellipse about it."""
+    hold_rtn_m: Sequence[float]
+    """Stays at this place [m], forced."""
+    approach: Approach
+    """Moves on a straight line, forced."""
+
+
+class Natural(TypedDict, total=False):
+    """Free motion from a state at the start of the run, in the chief's radial, transverse and normal axes."""
+
+    position_rtn_m: Required[Sequence[float]]
+    """Place relative to the chief [m]."""
+    velocity_rtn_m_per_s: Required[Sequence[float]]
+    """Velocity seen in the axes, which turn with the chief [m/s]."""
+    dynamics: Literal["two_body", "clohessy_wiltshire"]
+    """`two_body`: difference of two conics, for any distance and eccentricity; `clohessy_wiltshire`: the first order of it
+    about a circle. Default: two_body."""
+
+
+class Circumnavigation(TypedDict, total=False):
+    """An ellipse about the chief, twice as long along its orbit as it is high, once round in a revolution: free motion by
+    Clohessy and Wiltshire."""
+
+    radial_m: Required[float]
+    """Semi-axis up and down [m]."""
+    phase_deg: float
+    """Phase at the start of the run [deg]: 0 is ahead of the chief, 90 above it. Default: 0."""
+    normal_m: float
+    """Semi-axis out of the orbit's plane [m]. Default: 0."""
+    normal_phase_deg: float
+    """Phase of that at the start of the run [deg]. Default: 0."""
+    centre_transverse_m: float
+    """Its centre ahead of the chief [m]. Default: 0."""
+
+
+class Approach(TypedDict, total=False):
+    """Holds a place, moves on a straight line to another, and holds that: forced, along V-bar, R-bar or any other line."""
+
+    from_rtn_m: Required[Sequence[float]]
+    """Place until the approach [m]."""
+    to_rtn_m: Required[Sequence[float]]
+    """Place after it [m]."""
+    speed_m_per_s: Required[float]
+    """Its speed [m/s]."""
+    at_s: float
+    """When it begins, since the start of the run [s]. Default: 0."""
+
+
+class Object(TypedDict, total=False):
+    """An object of the scenario's own."""
+
+    name: Required[Text]
+    """A unique name of 1 to 64 characters."""
+    catalogue_number: int
+    """Replaces the catalogue's object of this number. By default that of its element set, else 990000001 and onwards."""
+    motion: Required[Motion]
+    """How it moves."""
+    attitude: Literal["nadir", "sun_tracking"] | Attitude
+    """How it is turned: towards the Earth, the Sun, or as given."""
+    panel: Panel
+    """The panel of its geometry that faces the Sun."""
+    geometry: Geometry
+    """Its shape; needs an attitude."""
+    model: Text
+    """A shipped model (`dmise list models`) or a file of one, in place of geometry and panel. Its attitude holds unless the
+    object has one."""
+    radius_m: float
+    """Radius of the diffuse sphere that is seen without a shape [m]. Default: 1."""
+    albedo: float
+    """Its albedo. Default: 0.2."""
+
+
 class Attitude(TypedDict, total=False):
     """How an object is turned; one of these."""
 
@@ -230,6 +473,8 @@ class Attitude(TypedDict, total=False):
     """Fixed relative to the stars."""
     spinning: Spinning
     """Turns about an axis of its own."""
+    tumbling: Tumbling
+    """Turns freely, without torque."""
     table: Text
     """A CSV file of time_s, w, x, y, z over the whole run."""
     node: Text
@@ -254,6 +499,17 @@ class Spinning(TypedDict, total=False):
     """Rotation of the body at the start of the run [deg]. Default: 0."""
     gcrs_from_body: Sequence[float]
     """Unit quaternion [w, x, y, z] without the phase. Default: [1, 0, 0, 0]."""
+
+
+class Tumbling(TypedDict, total=False):
+    """A rigid body that turns freely, without torque. Its axes are its principal axes."""
+
+    inertia_kg_m2: Required[Sequence[float]]
+    """Moments of inertia about x, y, z [kg m^2], none beyond the sum of the others. Only their ratios count."""
+    rate_deg_per_s: Required[Sequence[float]]
+    """Angular velocity about x, y, z at the start of the run [deg/s]."""
+    gcrs_from_body: Sequence[float]
+    """Unit quaternion [w, x, y, z] at the start of the run. Default: [1, 0, 0, 0]."""
 
 
 class Panel(TypedDict, total=False):
@@ -373,10 +629,14 @@ class Stars(TypedDict, total=False):
     catalogue: Text
     """`kstars` (V to 9), `tycho2` (that and Tycho-2, V to 11; `dmise catalogue fetch tycho2` makes it), or a file: HYG in
     CSV, Yale BSC5, kstars' own form, or an index that `dmise catalogue index` has made. Default: kstars."""
+    variables: Text
+    """The General Catalogue of Variable Stars (`gcvs5.txt`, or `gcvs_cat.dat` of CDS B/gcvs). Its stars then have the
+    brightness of the instant. Without it all are constant."""
     faintest_mag: float
     """Faintest star of the catalogue that is drawn [V mag]. Default: 9.5."""
-    synthetic_to: float
-    """Where the catalogue ends, stars go on by counts to this magnitude [V mag]; without it there are none."""
+    synthetic_to: float | Literal["limit", "off"]
+    """Where the catalogue ends, stars go on by counts to this magnitude [V mag]; `limit`: to the faintest that stands out of
+    a frame's noise. Default: off."""
 
 
 class Sensor(TypedDict, total=False):
@@ -411,7 +671,8 @@ class Sensor(TypedDict, total=False):
     extinction_mag_per_airmass: float
     """Extinction at 550 nm: a short form of `atmosphere: {extinction: ..}`."""
     sky: float | Literal["urban", "suburban", "dark", "space"] | Sky
-    """Light of the sky: a brightness [V mag/arcsec^2], a preset, or parts. Default: dark on the ground, space in orbit."""
+    """Light of the sky: one brightness everywhere [V mag/arcsec^2], a preset, or parts. Default: dark on the ground, space in
+    orbit."""
     atmosphere: Atmosphere
     """The air, on the ground."""
     weather: Weather
@@ -438,7 +699,8 @@ class Site(TypedDict, total=False):
     height_m: float
     """Height above the ellipsoid [m]. Default: 0."""
     sky: float | Literal["urban", "suburban", "dark", "space"] | Sky
-    """Light of the sky: a brightness [V mag/arcsec^2], a preset, or parts. Default: dark on the ground, space in orbit."""
+    """Light of the sky: one brightness everywhere [V mag/arcsec^2], a preset, or parts. Default: dark on the ground, space in
+    orbit."""
     atmosphere: Atmosphere
     """The air, on the ground."""
     weather: Weather
@@ -480,8 +742,12 @@ class Parts(TypedDict, total=False):
     """Moonlight scattered by the air."""
     twilight: Switch
     """Sunlight scattered by the air after sunset."""
+    daylight: Switch
+    """Sunlight scattered by the air by day."""
     light_pollution: Switch
     """Light of lamps scattered by the air."""
+    thermal_sky: Switch
+    """Heat of the air, in bands beyond 1.9 um."""
 
 
 class Lamps(TypedDict, total=False):
@@ -517,6 +783,13 @@ class Atmosphere(TypedDict, total=False):
     """Whether the air bends light. The plan decides if not given."""
     turbulence: Literal["hv57"] | Turbulence
     """Turbulence over the site, for scintillation."""
+    aerosol_optical_depth: float
+    """Optical depth of haze towards the zenith at 550 nm, for the day sky alone. Default: what `extinction` has beyond
+    molecules and ozone."""
+    angstrom_exponent: float
+    """Haze's depth goes by the wavelength to minus this, for the day sky alone. Default: 1.3."""
+    ground_albedo: float
+    """Share of light that the ground reflects by day. Default: 0.2."""
 
 
 class Turbulence(TypedDict, total=False):
@@ -582,6 +855,8 @@ class Camera(TypedDict, total=False):
     """The detector."""
     band: Required[Text | Band]
     """The band: the name of a filter (`dmise list filters`), a CSV file of its transmission, or a box."""
+    filters: Sequence[Text | Band]
+    """Further filters of its wheel, after `band`: bands that an observatory's software may choose (`dmise observatory`)."""
     magnitude_system: Literal["V-solar", "Vega", "AB"]
     """Of the magnitudes of detections and of the header's zero point: the V of a source of the Sun's colour that is as bright
     in the band, or the band's own. Default: V-solar."""
@@ -612,17 +887,21 @@ class Optics(TypedDict, total=False):
     """Diameter of the secondary in that of the primary. Default: 0."""
     transmission: float
     """Share of the light that passes the optics, without filter and obscuration. Default: 1."""
-    psf: Literal["gaussian", "diffraction"]
-    """`gaussian` is a round blur of given width. `diffraction` follows from the pupil, its aberrations and the air. Default:
-    gaussian."""
+    psf: Literal["gaussian", "diffraction", "file"]
+    """`gaussian` is a round blur of given width. `diffraction` follows from the pupil, its aberrations and the air. `file` is
+    that of `psf_file`. Default: gaussian."""
+    psf_file: Text | PsfFile
+    """Images of a point source, with `psf: file`: a FITS file, or a map of it."""
     psf_fwhm_px: float
     """Full width at half maximum of the Gaussian [px], before diffraction. Default: 1.5."""
     spiders: Spiders
     """Vanes in the pupil, with `psf: diffraction`."""
     defocus_m: float
     """Distance of the detector from the focus [m], with `psf: diffraction`. Default: 0."""
+    focus_distance_m: float
+    """Range that is in focus [m]. Stars are then out of focus, as are objects at other ranges. Default: infinity."""
     jitter_px: float
-    """Rms jitter of the pointing along an axis [px], with `psf: diffraction`. Default: 0."""
+    """Rms jitter of the pointing along an axis [px], with `psf: diffraction` or `file`. Default: 0."""
     jitter_arcsec: float
     """The same [arcsec]; one of both may be given. Default: 0."""
     zernike_nm: ZernikeNm
@@ -651,6 +930,8 @@ class Optics(TypedDict, total=False):
     """Light lost away from the axis."""
     stray_light: StrayLight
     """Light of Sun, Moon and Earth beside the field on the focal plane."""
+    emission: Emission
+    """Heat of the telescope and the window, in bands beyond 1.9 um."""
     equivalent_aperture: Switch
     """Takes the aperture as a collecting area, which allows focal ratios below 0.5. Default: off."""
     ghost_fraction: float
@@ -674,6 +955,19 @@ class Distortion(TypedDict, total=False):
     """Tangential, -100 to 100 with `brown_conrady`. Default: 0."""
     p2: float
     """Tangential, -100 to 100 with `brown_conrady`. Default: 0."""
+
+
+class PsfFile(TypedDict, total=False):
+    """Images of a point source in a FITS file. The middle of an image is the place of the chief ray. Planes of a cube are of
+    places of the frame (cards DET_YX0, ..: `(y, x)` in pixels), of wavelengths (WAVELN00, .. in metres), or of both."""
+
+    path: Required[Text]
+    """The file, beside this one."""
+    samples_per_px: float
+    """Pixels of an image in a pixel of the camera. Without it cards tell: OVERSAMP, PSF_SAMP (its inverse) or PIXELSCL
+    [arcsec]."""
+    with_pixel: Switch
+    """The response of the camera's pixel is in the images, as in an effective point spread function (ePSF). Default: off."""
 
 
 class Spiders(TypedDict, total=False):
@@ -771,6 +1065,19 @@ class StrayLight(TypedDict, total=False):
     """Angles of a source from the boresight [deg], rising."""
     transmittance: Required[Sequence[float]]
     """Irradiance of the focal plane over that of the aperture, at each angle."""
+
+
+class Emission(TypedDict, total=False):
+    """Heat of the telescope and the window as the detector sees it: behind a cold stop, the beam alone."""
+
+    emissivity: float
+    """Emissivity of all mirrors and lenses together, before the transmission. Default: 0."""
+    temperature_c: float
+    """Their temperature [deg C]. Default: the air's; needed in space."""
+    window_emissivity: float
+    """Emissivity of the camera's window. Default: 0."""
+    window_temperature_c: float
+    """Its temperature [deg C]. Default: the air's; needed in space."""
 
 
 class Detector(TypedDict, total=False):
@@ -1013,10 +1320,13 @@ class Park(TypedDict, total=False):
 
 
 class Detection(TypedDict, total=False):
-    """Detection by a program of one's own."""
+    """Detection by a program of one's own, or with light curves."""
 
-    node: Required[Text]
+    node: Text
     """One of `nodes`, which is asked for each frame."""
+    light_curves: Switch
+    """Whether detections of streaks have their light over time and its period. Not of a program of one's own. Default:
+    off."""
 
 
 class Accuracy(TypedDict, total=False):
@@ -1081,15 +1391,25 @@ class Effects(TypedDict, total=False):
     twilight: Switch
     """Sunlight scattered by the air with the Sun below the horizon. Left out: 18 mag/arcsec2 with the Sun 10 deg down.
     Default: by the plan."""
+    daylight: Switch
+    """Sunlight scattered by the air by day. Left out: 3 to 5 mag/arcsec2 in V, 5 to 8 in J, H and K. Default: by the plan."""
     light_pollution: Switch
     """Light of lamps scattered by the air. Left out: 18 mag/arcsec2 in a city. Default: by the plan."""
+    thermal_sky: Switch
+    """Heat of the air, in bands that reach beyond 1.9 um. Left out: beyond 3 um nearly all light of the sky: 2e6 times the
+    airglow of V at 10 um. Default: by the plan."""
     stray_light: Switch
     """Light of Sun, Moon and Earth beside the field, scattered by the optics. Left out: no background of it: 1e-6 of the
     Sun's light is 1e4 times the night sky's. Default: by the plan."""
+    thermal_optics: Switch
+    """Heat of the telescope and the window, in bands that reach beyond 1.9 um. Left out: beyond 3 um, at 280 K and an
+    emissivity of 0.1, as much background as the sky's. Default: by the plan."""
     sun_disc: Switch
     """The Sun's disc, where it is in the field. Left out: no Sun in the field. Default: by the plan."""
     moon_disc: Switch
     """The lit part of the Moon's disc, where it is in the field. Left out: no Moon in the field. Default: by the plan."""
+    planets: Switch
+    """Mercury to Neptune, where one is in the field. Left out: no planets in the field. Default: by the plan."""
     earth_disc: Switch
     """The lit Earth, where a camera in space has it in the field. Left out: a dark Earth. Default: by the plan."""
     limb_air: Switch
@@ -1114,11 +1434,14 @@ class Effects(TypedDict, total=False):
     thermal_emission: Switch
     """Objects with a shape radiate by their warmth. Left out: at 300 K 1e-3 of the sunlight that a reflectance of 0.3 returns
     at 2.5 um, 7 times it at 5 um. Default: by the plan."""
+    glints: Switch
+    """Small parts of objects glint and fade as they turn. Left out: 0.1 to 0.2 mag within a minute for OneWeb and Iridium
+    NEXT. Default: by the plan."""
     stars: Literal["v0", "v1", "v2", "v3", "v4", "v5", "v6", "v7", "v8", "v9", "v10", "v11", "v12", "v13", "v14", "v15", "all"] | Switch
     """Star background. Left out: no stars. Default: by the plan."""
     synthetic_stars: Literal["v10", "v11", "v12", "v13", "v14", "v15", "v16", "v17", "v18", "v19", "v20", "v21", "all"] | Switch
-    """Stars that no catalogue has, where it ends (if `stars.synthetic_to` asks for them). Left out: they are in the smooth
-    starlight; a pixel of 10 arcsec in the Milky Way has 0.8 to V = 21. Default: by the plan."""
+    """Stars that no catalogue has, where it ends (to `stars.synthetic_to`). Left out: they are in the smooth starlight; a
+    pixel of 10 arcsec in the Milky Way has 0.8 to V = 21. Default: by the plan."""
     earth_occultation: Switch
     """The Earth hides what is behind it. Left out: objects and stars behind it are drawn. Default: by the plan."""
     limb_extinction: Switch
@@ -1160,6 +1483,9 @@ class Effects(TypedDict, total=False):
     focus_drift: Switch
     """The focus drifts with time and temperature. Left out: the focus stays: a disc of defocus / focal ratio is missing.
     Default: by the plan."""
+    range_defocus: Literal["10%", "3%", "1%", "0.3%"] | Switch
+    """Objects are out of focus by their range (share of their light that may be misplaced). Left out: objects are as sharp as
+    stars: a disc of aperture / range is missing. Default: by the plan."""
     lens_ghost: Switch
     """Reflections between lens surfaces add a faint mirrored copy of the image. Left out: no ghosts: 1e-5 to 1e-3 of bright
     sources. Default: by the plan."""
@@ -1313,7 +1639,13 @@ class Fusion(TypedDict, total=False):
 
     node: Text
     """Node of `nodes` whose program makes the tracks, instead of the fusion node's own filters. Of the other keys it takes
-    `detection_probability`, `cue_delay_ticks` and `not_in_catalogue`."""
+    `detection_probability`, `cue_delay_ticks`, `catalogue`, `age_days` and `not_in_catalogue`."""
+    catalogue: Text
+    """File of element sets beside the scenario (TLE, 3LE, OMM) that the node knows instead of those with which the objects
+    move."""
+    age_days: float
+    """Least age at the start of the run of the element sets of `catalogue` [days]: of each object the newest that is so old
+    is known."""
     catalogue_sigma_m: Sequence[float]
     """Errors of the catalogue at its epoch [m]: radial, along the track, across it."""
     catalogue_sigma_m_per_day: Sequence[float]
@@ -1389,7 +1721,7 @@ class Output(TypedDict, total=False):
     truth: Switch
     """Whether `truth.jsonl` says what was drawn into each frame. Default: on."""
     star_truth: Switch
-    """Writes `frame-NNNNNN.stars.csv` with every star that was drawn. Default: off."""
+    """Writes `frame-NNNNNN.stars.csv` with every star and planet that was drawn. Default: off."""
     preview_width_px: int
     """Greatest width of a preview [px]. Wider frames are shrunk. Default: 1663."""
     radiance_exr: Switch | RadianceExr

@@ -24,6 +24,7 @@ from .display import with_progress
 from .engine import core, streams
 from .errors import InputError
 from .json_lines import record_of_line
+from .late_imports import importing
 from .records import Detection, FrameReport, Record, Truth
 from .scenario_text import Scenario, encodable, seed_of, source_of
 from .tables import Table, table_of
@@ -59,7 +60,8 @@ class Simulation:
             self._core = core.Simulation.of_text(self._text, self._name, seed_of(seed), names)
         self._models: dict[str, Served] = {}
         if nodes:
-            from .own_in_process import checked_models  # which needs protobuf
+            with importing:
+                from .own_in_process import checked_models  # which needs protobuf
 
             self._models = checked_models(self._core.own_nodes, nodes)
 
@@ -131,7 +133,8 @@ class Simulation:
     def _called_anew(self) -> Callable[[str, str, list[bytes]], list[bytes]] | None:
         if not self._models:
             return None
-        from .own_in_process import ModelsInProcess
+        with importing:
+            from .own_in_process import ModelsInProcess
 
         return ModelsInProcess(self._models)
 

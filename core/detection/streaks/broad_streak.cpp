@@ -1,0 +1,177 @@
+#include "core/detection/streaks/broad_streak.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/numeric/quantile.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr int most_half_px = 32;         // of the profile
+constexpr double least_broadness = 1.3;  // to the width of the PSF
+constexpr double least_pixel_snr = 4.0;
+
+/// Principal axis of the points within `half_px` of a line.
+Line axis_of(const std::vector<Point>& points, const Line& line, double half_px) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (const Point& p : points) {
+    if (std::abs(line.off(p)) > half_px) continue;
+    const double dx = p.x - line.x, dy = p.y - line.y;
+    n += p.weight, x += p.weight * dx, y += p.weight * dy;
+    xx += p.weight * dx * dx, xy += p.weight * dx * dy, yy += p.weight * dy * dy;
+  }
+  if (!(n > 0)) return line;
+  x /= n, y /= n;
+  const double angle = 0.5 * std::atan2(2 * (xy / n - x * y), xx / n - x * x - (yy / n - y * y));
+  return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
+}
+
+Extent extent_on(const std::vector<Point>& points, const Line& line, double half_px) {
+  Extent extent{1, 0};
+  for (const Point& p : points) {
+    if (std::abs(line.off(p)) > half_px) continue;
+    const int at = int(std::lround(line.major(p)));
+    extent = extent.to < extent.from ? Extent{at, at}
+                                     : Extent{std::min(extent.from, at), std::max(extent.to, at)};
+  }
+  return extent;
+}
+
+/// Median light of pixels along lines beside a line, from `-most_half_px` on; NaN where too few are
+/// usable.
+std::vector<double> profile_across(const Scene& scene, const Line& line, const Extent& extent) {
+  constexpr int most_places = 200;
+  constexpr std::size_t least_places = 12;
+  const Extent seen = in_frame(scene, line, extent);
+  const int step = std::max(1, (seen.to - seen.from) / most_places);
+  std::vector<double> profile;
+  for (int off = -most_half_px; off <= most_half_px; ++off) {
+    std::vector<double> light;
+    for (int k = seen.from; k <= seen.to; k += step) {
+      const Point at = line.at(k, off);
+      const int x = int(std::lround(at.x)), y = int(std::lround(at.y));
+      if (scene.contains(x, y) && scene.is_usable(x, y))
+        light.push_back(double(scene.pixel(x, y).signal_e));
+    }
+    profile.push_back(light.size() < least_places ? std::nan("") : median_of(std::move(light)));
+  }
+  return profile;
+}
+
+/// What half of a profile's greatest light is between.
+struct Sides {
+  double first_px = 0.0, last_px = 0.0, most_e = 0.0;
+  double width_px() const { return last_px - first_px; }
+};
+
+std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_px) {
+  Sides sides;
+  int top = -1;
+  for (int i = 0; i < int(profile.size()); ++i)
+    if (std::abs(i - most_half_px) <= reach_px && profile[std::size_t(i)] > sides.most_e) {
+      sides.most_e = profile[std::size_t(i)];
+      top = i;
+    }
+  if (top < 0) return std::nullopt;
+  // From outside, because a hollow one may have less than half in its middle.
+  const auto side = [&](int way) -> std::optional<double> {
+    const double half = 0.5 * sides.most_e;
+    std::optional<double> found;
+    int dark = 0;
+    for (int i = top; i >= 0 && i < int(profile.size()) && dark < 4; i += way) {
+      const double here = profile[std::size_t(i)];
+      if (!std::isfinite(here)) return std::nullopt;
+      if (here < half) {
+        ++dark;
+        continue;
+      }
+      dark = 0;
+      const int next = i + way;
+      if (next < 0 || next >= int(profile.size())) return std::nullopt;
+      const double beyond = profile[std::size_t(next)];
+      if (beyond < half) found = i + way * (here - half) / (here - beyond) - most_half_px;
+    }
+    return found;
+  };
+  const auto first = side(-1), last = side(1);
+  if (!first || !last) return std::nullopt;
+  sides.first_px = *first;
+  sides.last_px = *last;
+  return sides;
+}
+
+/// Standard deviation of a profile's light about its middle.
+double spread_px(const std::vector<double>& profile, const Sides& sides) {
+  const double middle = 0.5 * (sides.first_px + sides.last_px), reach = 1.2 * sides.width_px();
+  double sum = 0.0, square = 0.0;
+  for (int i = 0; i < int(profile.size()); ++i) {
+    const double off = i - most_half_px - middle, light = profile[std::size_t(i)];
+    if (!(std::abs(off) <= reach) || !(light > 0.1 * sides.most_e)) continue;
+    sum += light;
+    square += light * off * off;
+  }
+  return std::sqrt(square / sum);
+}
+
+/// Whether there is more light between the sides than two lines of the PSF's width would leave.
+bool has_no_gap(const std::vector<double>& profile, const Sides& sides, double fwhm_px) {
+  constexpr double least_apart = 1.1;   // in FWHM: nearer ones leave no gap
+  constexpr double sampling_px2 = 1.0;  // of pixels taken at the nearest place
+  const double apart = sides.width_px() / std::sqrt(fwhm_px * fwhm_px + sampling_px2) - 1;
+  if (apart < least_apart) return false;
+  const double of_pair = 2 * std::exp2(-apart * apart) / (1 + std::exp2(-4 * apart * apart));
+  double least_e = sides.most_e;
+  for (int i = int(std::ceil(sides.first_px + fwhm_px / 2));
+       i <= int(std::floor(sides.last_px - fwhm_px / 2)); ++i)
+    least_e = std::min(least_e, profile[std::size_t(i + most_half_px)]);
+  return least_e > 0.5 * (1 + of_pair) * sides.most_e;
+}
+
+/// Whether there is neither light nor a lack of it beside a line, as there is beside an edge.
+bool is_alone(const std::vector<double>& profile, const Sides& sides) {
+  constexpr double most_beside = 0.2;  // of its light
+  for (const int way : {-1, 1}) {
+    const double from = (way < 0 ? sides.first_px : sides.last_px) + way * 0.5 * sides.width_px();
+    double sum = 0.0;
+    int count = 0;
+    for (int k = 0; k < 2 + int(0.5 * sides.width_px()); ++k, ++count) {
+      const int i = int(std::lround(from)) + way * k + most_half_px;
+      if (i < 0 || i >= int(profile.size())) return false;
+      sum += profile[std::size_t(i)];
+    }
+    if (!(std::abs(sum) < most_beside * count * sides.most_e)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<BroadLine> broad_line(const Scene& scene, const std::vector<Point>& points,
+                                    const Line& rough) {
+  constexpr int rounds = 3;
+  const double fwhm_px = fwhm_per_sigma * scene.sigma_px;
+  BroadLine broad{.line = rough, .extent = {1, 0}};
+  double half_px = 4 * fwhm_px;
+  for (int round = 0; round < rounds; ++round) {
+    broad.line = axis_of(points, broad.line, half_px);
+    broad.extent = extent_on(points, broad.line, half_px);
+    if (broad.extent.to <= broad.extent.from) return std::nullopt;
+    const auto profile = profile_across(scene, broad.line, broad.extent);
+    const auto sides = sides_of(profile, half_px);
+    if (!sides || sides->width_px() < least_broadness * fwhm_px) return std::nullopt;
+    if (sides->most_e < least_pixel_snr * scene.noise_e_at(broad.line.x, broad.line.y))
+      return std::nullopt;
+    if (!is_alone(profile, *sides)) return std::nullopt;
+    const double middle = 0.5 * (sides->first_px + sides->last_px);
+    broad.line.x -= middle * broad.line.uy;
+    broad.line.y += middle * broad.line.ux;
+    broad.sigma_px = 0.5 * (spread_px(profile, *sides) + sides->width_px() / fwhm_per_sigma);
+    broad.is_no_pair = has_no_gap(profile, *sides, fwhm_px);
+    half_px = 0.75 * sides->width_px() + 2;
+  }
+  return broad;
+}
+
+}  // namespace dmise

@@ -1,0 +1,262 @@
+#include "core/detection/streaks/compact_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/units.h"
+#include "core/detection/pixels/detection_limits.h"
+#include "core/detection/source/source_fit.h"
+#include "core/detection/source/star_hypothesis.h"
+#include "core/detection/source/template_snr.h"
+#include "core/detection/streaks/faint_streaks.h"
+
+namespace dmise {
+namespace {
+
+constexpr double fit_keeps = 0.8;  // of a faint source's SNR, when the sky is fitted too
+
+struct Light {
+  std::vector<FitPixel> usable;   // pixels to fit
+  std::vector<FitPixel> clipped;  // saturated
+};
+
+/// Pixels of a component and their neighbours.
+Light light_around(const Scene& scene, const Component& component) {
+  std::map<int, std::vector<std::pair<int, int>>> rows;
+  for (const Run& run : component.runs)
+    for (int y = run.y - 1; y <= run.y + 1; ++y)
+      if (y >= 0 && y < scene.counts.rows)
+        rows[y].push_back(
+            {std::max(0, run.first_x - 1), std::min(scene.counts.columns - 1, run.last_x + 1)});
+  Light out;
+  for (auto& [y, spans] : rows) {
+    std::sort(spans.begin(), spans.end());
+    int done = -1;
+    for (const auto& [first, last] : spans)
+      for (int x = std::max(first, done + 1); x <= last; ++x) {
+        done = x;
+        if (scene.has_value(x, y) && !scene.is_hidden(x, y))
+          (scene.is_usable(x, y) ? out.usable : out.clipped).push_back(scene.pixel(x, y));
+      }
+  }
+  return out;
+}
+
+/// Moments of the light: centroid, and the uniform trail of the same spread.
+Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
+  double f = 0, x = 0, y = 0;
+  for (const auto& p : pixels) {
+    const double w = std::max(p.signal_e, 0.0f);
+    f += w;
+    x += w * p.x;
+    y += w * p.y;
+  }
+  if (!(f > 0)) return {};
+  x /= f;
+  y /= f;
+  double xx = 0, xy = 0, yy = 0, total = 0;
+  for (const auto& p : pixels) {
+    const double w = std::max(p.signal_e, 0.0f) / f, dx = p.x - x, dy = p.y - y;
+    xx += w * dx * dx;
+    xy += w * dx * dy;
+    yy += w * dy * dy;
+    total += p.signal_e;
+  }
+  const double major = 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
+  return {.x_px = x,
+          .y_px = y,
+          .flux_e = std::max(total, 1.0),
+          .length_px = std::sqrt(12 * std::max(major - sigma_px * sigma_px, 0.1)),
+          .angle_rad = 0.5 * std::atan2(2 * xy, xx - yy)};
+}
+
+/// Relative error of the PSF outside `clipped` pixels.
+double wings_error(std::size_t clipped, double sigma_px) {
+  const double radius_in_sigmas = std::sqrt(double(clipped) / pi) / sigma_px;
+  return std::clamp(detection_limits::wings_error * radius_in_sigmas * radius_in_sigmas,
+                    detection_limits::least_wings_error, detection_limits::most_wings_error);
+}
+
+/// Fits the wings alone. The flux is that of the wings times a factor given by the PSF, with an
+/// error of 0.01 for each square of the sigma at which they begin (2 ln of peak over clip).
+std::optional<Source> from_wings(const Scene& scene, const Trail& start, bool streak,
+                                 const std::vector<FitPixel>& clipped, double model_error) {
+  auto source = fit_source(scene, start, streak, 0.3 * model_error);
+  if (!source) return source;
+  source->model_error = model_error;
+  double excess = 1.0;
+  for (const FitPixel& p : clipped)
+    excess = std::max(excess, trail_value(source->trail(), scene.sigma_px, p.x, p.y) /
+                                  std::max(double(p.signal_e), 1.0));
+  const double flux_error_e = 0.02 * std::log(excess) * source->trail().flux_e;
+  source->fit.add_cov(2, 2, flux_error_e * flux_error_e);
+  return source;
+}
+
+/// Whether the source would clip a pixel that is clipped; wings alone are ambiguous.
+bool explains_saturation(const Scene& scene, const Source& source,
+                         const std::vector<FitPixel>& clipped) {
+  return std::ranges::any_of(clipped, [&](const FitPixel& p) {
+    return trail_value(source.trail(), scene.sigma_px, p.x, p.y) > 0.7 * p.signal_e;
+  });
+}
+
+/// A component with the pixels around it, and the fits that compare what it may be.
+class Candidate {
+ public:
+  Candidate(const Scene& scene, const Component& component)
+      : scene_(scene), around_(light_around(scene, component)) {
+    std::vector<FitPixel> all = around_.usable;
+    all.insert(all.end(), around_.clipped.begin(), around_.clipped.end());
+    light_ = moments(all, scene.sigma_px);
+    model_error_ = is_saturated() ? wings_error(around_.clipped.size(), scene.sigma_px)
+                                  : detection_limits::model_error;
+  }
+
+  /// Whether there are enough pixels to compare fits.
+  bool has_light() const { return around_.usable.size() >= 8; }
+  bool is_saturated() const { return !around_.clipped.empty(); }
+  /// Uniform trail of the same light and spread.
+  const Trail& light() const { return light_; }
+
+  TrailFit fit(const Psf& psf, Trail start, unsigned free, int most_steps,
+               std::optional<double> good_enough_sigmas = std::nullopt) const {
+    FitSettings fit_settings = comparison(psf, most_steps);
+    fit_settings.good_enough_sigmas = good_enough_sigmas;
+    return fit_trails(around_.usable, {std::move(start)}, {free}, fit_settings);
+  }
+  TrailFit as_point() const {
+    Trail point = light_;  // not from a fitted star trail, which may lie anywhere along it
+    point.length_px = 0.0;
+    return fit(psf(), point, trail_place, 8);
+  }
+  TrailFit as_line() const { return fit(psf(), light_, trail_line, 15); }
+  double deviance_as_two(const Trail& star) const {
+    return deviance_of_stars(around_.usable, light_, star, 2, comparison(psf(), 15));
+  }
+
+  /// The final fit; empty if it fails or does not explain what is saturated.
+  std::optional<Source> source(const Trail& start, bool streak) const {
+    auto source = is_saturated() ? from_wings(scene_, start, streak, around_.clipped, model_error_)
+                                 : fit_source(scene_, start, streak, 0.0);
+    if (!source || (is_saturated() && !explains_saturation(scene_, *source, around_.clipped)))
+      return std::nullopt;
+    return source;
+  }
+  /// The same, empty also if it is too faint.
+  std::optional<Source> bright_source(const Trail& start, bool streak) const {
+    auto bright = source(start, streak);
+    if (bright && bright->snr() < detection_limits::least_snr) bright.reset();
+    return bright;
+  }
+
+  /// The same, empty also if it does not stand out from the noise by `least_snr`.
+  std::optional<Source> significant_source(const Trail& start, double least_snr) const {
+    auto significant = source(start, start.length_px > 0.0);
+    if (!significant) return significant;
+    const Trail& t = significant->trail();
+    least_snr *= crowding(*scene_.flat, t);
+    // A star that is brighter than expected, by scintillation or by nature.
+    const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
+    const bool may_be_star = t.length_px < 6 * scene_.sigma_px &&
+                             scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e);
+    if (may_be_star || (!is_saturated() && (template_snr(scene_, t) < least_snr ||
+                                            significant->snr() < fit_keeps * least_snr)))
+      significant.reset();
+    return significant;
+  }
+
+  bool is_line(const TrailFit& as_line) const {
+    return as_line.good(4.0) && plausible(scene_, as_line.trails[0]) &&
+           as_line.trails[0].length_px >= 1.0;
+  }
+
+  Psf psf() const { return scene_.psf.at({light_.x_px, light_.y_px}); }
+  Psf nearest_gaussian() const { return scene_.psf.sigma_at({light_.x_px, light_.y_px}); }
+
+ private:
+  FitSettings comparison(const Psf& psf, int most_steps) const {
+    return {.psf = psf,
+            .model_error = model_error_,
+            .most_steps = most_steps,
+            .settled_chi2 = comparison_settled_chi2};
+  }
+
+  const Scene& scene_;
+  Light around_;
+  Trail light_;
+  double model_error_ = 0.0;
+};
+
+/// The judgement where every star is known: a point or a line, whatever the shape of stars.
+std::optional<Source> judge_without_stars(const Candidate& candidate) {
+  const TrailFit as_point = candidate.as_point(), as_line = candidate.as_line();
+  if (as_point.good(5.0) && as_point.deviance < as_line.deviance + detection_limits::line_margin)
+    return candidate.significant_source(as_point.trails[0], detection_limits::least_snr);
+  if (!candidate.is_line(as_line)) return std::nullopt;
+  const Trail& line = as_line.trails[0];
+  return candidate.significant_source(line, least_streak_snr(line.length_px));
+}
+
+/// The judgement by the shape of stars.
+std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& candidate) {
+  const Trail& light = candidate.light();
+  Trail star = scene.star_trail(light.x_px, light.y_px);
+  star.flux_e = light.flux_e;
+  constexpr double surely_star_sigmas = 0.5;
+  TrailFit as_star =
+      candidate.fit(candidate.nearest_gaussian(), star, trail_place, 8, surely_star_sigmas);
+  if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  if (!scene.psf.is_round_gaussian()) {  // most stars are known by the nearest Gaussian
+    as_star = candidate.fit(candidate.psf(), as_star.trails[0], trail_place, 8, surely_star_sigmas);
+    if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  }
+  const bool stars_trail = star.length_px >= detection_limits::least_difference_px;
+  TrailFit as_point;
+  if (stars_trail) as_point = candidate.as_point();
+  const bool may_be_point =
+      stars_trail && as_point.deviance < as_star.deviance - detection_limits::blend_margin;
+  if (as_star.good(3.5) && !may_be_point) return std::nullopt;
+
+  const TrailFit as_line = candidate.as_line();
+  if (may_be_point && as_point.good(5.0) &&
+      as_point.deviance < as_line.deviance + detection_limits::blend_margin) {
+    auto source = candidate.bright_source(as_point.trails[0], false);
+    // A star cut by the frame's edge looks like a point.
+    if (source && !source->at_edge && point_beats_star(scene, *source) &&
+        !is_of_overlapping_trails(scene, *source))
+      return source;
+    return std::nullopt;
+  }
+  if (!candidate.is_line(as_line) ||
+      as_line.deviance > as_star.deviance - 2 * detection_limits::blend_margin ||
+      as_line.deviance > candidate.deviance_as_two(star) - detection_limits::blend_margin)
+    return std::nullopt;
+  auto source = candidate.bright_source(as_line.trails[0], true);
+  // A star cut by the frame's edge looks like a short line, too.
+  if (!source || (source->at_edge && source->trail().length_px < star.length_px))
+    return std::nullopt;
+  const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
+  double tolerance_px = std::max(detection_limits::least_difference_px, 4 * sigma_length_px);
+  if (candidate.is_saturated()) tolerance_px += 2 * scene.sigma_px;  // wings show ends less sharply
+  if (moves_like_star(scene, *source, star, tolerance_px) || is_wide_body(scene, *source) ||
+      !beats_stars(scene, *source) || is_of_overlapping_trails(scene, *source))
+    return std::nullopt;
+  return source;
+}
+
+}  // namespace
+
+CompactJudgement judge_compact(const Scene& scene, const Component& component) {
+  const Candidate candidate(scene, component);
+  if (!candidate.has_light()) return {.star_like = true};
+  const Trail& light = candidate.light();
+  if (scene.would_be_known(light.x_px, light.y_px, light.flux_e))
+    return {.source = judge_without_stars(candidate)};
+  auto source = judge_among_stars(scene, candidate);
+  const bool star_like = !source;
+  return {std::move(source), star_like};
+}
+
+}  // namespace dmise

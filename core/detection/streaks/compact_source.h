@@ -1,0 +1,20 @@
+#pragma once
+#include <optional>
+
+#include "core/detection/pixels/components.h"
+#include "core/detection/source/scene.h"
+
+namespace dmise {
+
+/// What a component is: a source; or `star_like`, which is a star of this frame, several, or what
+/// cannot be distinguished from them; or neither.
+struct CompactJudgement {
+  std::optional<Source> source;
+  bool star_like = false;
+};
+
+/// Judges a component no longer than a few PSFs: a star of this frame, blended stars, a point among
+/// trailed stars, or a short streak. Neither where stars are known and no source is fitted.
+CompactJudgement judge_compact(const Scene& scene, const Component& component);
+
+}  // namespace dmise

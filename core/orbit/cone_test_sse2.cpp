@@ -1,5 +1,0 @@
-#include "core/orbit/cone_kernel.h"
-
-namespace dmise::sse2 {
-const ConeKernels cone_kernels = {present_words, cone_words};
-}  // namespace dmise::sse2

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/products/product_fields.h"
+
+namespace dmise {
+
+/// A period in the light of a streak, found by harmonics of it in the light along the line.
+struct LightPeriod {
+  double period_px = 0.0, period_sigma_px = 0.0;  // along the line
+  // By the time that the object takes from end to end. The ends are known less well than the light
+  // between them where the object is dark at one: then the exposure goes on beyond it.
+  double period_s = 0.0, period_sigma_s = 0.0;
+  // Half the difference between the most and the least light in a period, over the mean light.
+  double amplitude = 0.0, amplitude_sigma = 0.0;
+  std::uint32_t harmonics = 0;
+  double false_alarm = 0.0;  // probability that noise on even light has a period as significant
+
+  bool operator==(const LightPeriod&) const = default;
+};
+
+/// Light of a streak over time, in bins of equal length along its line, from end 1 to end 2. Bins
+/// without pixels that can be used are left out.
+struct LightCurve {
+  double bin_px = 0.0;           // length of a bin
+  std::vector<double> along_px;  // of the middle of a bin from end 1
+  // The same after the start of the exposure, with the delay of the row of a rolling shutter, of a
+  // motion from end 1 to end 2 (`direction_known`).
+  std::vector<double> time_s;
+  std::vector<double> light_e, sigma_e;  // electrons of a bin and their error
+  // Of the errors of a bin and of the next one: the PSF blurs the light of one over both.
+  std::vector<double> correlation;
+  std::optional<LightPeriod> period;  // where one is significant
+
+  bool operator==(const LightCurve&) const = default;
+};
+
+template <class V, MaybeConst<LightPeriod> P>
+void visit_fields(V& v, P& p) {
+  v("period_px", p.period_px);
+  v("period_sigma_px", p.period_sigma_px);
+  v("period_s", p.period_s);
+  v("period_sigma_s", p.period_sigma_s);
+  v("amplitude", p.amplitude);
+  v("amplitude_sigma", p.amplitude_sigma);
+  v("harmonics", p.harmonics);
+  v("false_alarm", p.false_alarm);
+}
+
+template <class V, MaybeConst<LightCurve> L>
+void visit_fields(V& v, L& light) {
+  v("bin_px", light.bin_px);
+  v("along_px", light.along_px);
+  v.null_unless(true, "time_s", light.time_s);
+  v("light_e", light.light_e);
+  v("sigma_e", light.sigma_e);
+  v("correlation", light.correlation);
+  v("period", light.period);
+}
+
+}  // namespace dmise

@@ -1,0 +1,214 @@
+#include "core/sequences/registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/numeric/least_squares.h"
+#include "core/base/numeric/quantile.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double nowhere_px = -1e9;
+constexpr std::size_t voting_stars = 150;  // the brightest, of both frames
+constexpr double vote_cell_px = 4.0;
+constexpr std::size_t min_votes = 5;
+constexpr std::size_t min_for_affine = 12;
+constexpr double min_over_chance = 1.2;
+constexpr double outlier_scatters = 3.5, min_reach_px = 0.3;
+
+struct Pair {
+  PixelPosition from, to;
+  double ratio;  // of light
+};
+
+double distance_px(PixelPosition a, PixelPosition b) {
+  return std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
+}
+
+/// Shift that most pairs of bright stars have in common, and how many; none: {}.
+std::pair<PixelPosition, std::size_t> common_shift(const std::vector<PixelPosition>& expected,
+                                                   const std::vector<PlateSource>& seen) {
+  std::map<std::pair<long, long>, std::size_t> votes;
+  const auto cell = [](double px) { return std::lround(px / vote_cell_px); };
+  for (std::size_t a = 0; a < std::min(expected.size(), voting_stars); ++a)
+    for (std::size_t b = 0; b < std::min(seen.size(), voting_stars); ++b)
+      ++votes[{cell(seen[b].x_px - expected[a].x_px), cell(seen[b].y_px - expected[a].y_px)}];
+  const auto count = [&](long x, long y) {
+    const auto at = votes.find({x, y});
+    return at == votes.end() ? std::size_t(0) : at->second;
+  };
+  std::pair<PixelPosition, std::size_t> best;
+  for (const auto& [at, own] : votes) {  // a shift on the border of cells votes in several
+    const auto [x, y] = at;
+    std::size_t sum = 0;
+    for (long v = y - 1; v <= y + 1; ++v)
+      for (long u = x - 1; u <= x + 1; ++u) sum += count(u, v);
+    sum = 8 * sum + own;
+    if (sum > best.second) best = {{double(x) * vote_cell_px, double(y) * vote_cell_px}, sum};
+  }
+  best.second /= 8;
+  return best;
+}
+
+/// Pairs of stars within reach of each other; each star is in one.
+std::vector<Pair> pairs_within(const LinearMap& map, const std::vector<PixelPosition>& expected,
+                               const FilteredSequence& sequence, std::size_t frame,
+                               double reach_px) {
+  const auto &seen = sequence.frames[frame].stars,
+             &stars = sequence.frames[sequence.reference].stars;
+  const SourceGrid grid(seen, sequence.columns, sequence.rows);
+  std::map<int, Pair> best;
+  for (std::size_t a = 0; a < expected.size(); ++a) {
+    if (stars[a].saturated) continue;
+    const PixelPosition at = map(expected[a]);
+    const int b = grid.nearest(at, reach_px);
+    if (b < 0 || seen[std::size_t(b)].saturated) continue;
+    const PlateSource& star = seen[std::size_t(b)];
+    const PixelPosition to{star.x_px, star.y_px};
+    const auto known = best.find(b);
+    if (known == best.end() || distance_px(at, to) < distance_px(map(known->second.from), to))
+      best[b] = {expected[a], to, star.flux / std::max(stars[a].flux, 1e-9)};
+  }
+  std::vector<Pair> pairs;
+  for (const auto& [b, pair] : best) pairs.push_back(pair);
+  return pairs;
+}
+
+PixelPosition mean_of(const std::vector<Pair>& pairs, PixelPosition Pair::*member) {
+  PixelPosition sum;
+  for (const Pair& pair : pairs) sum = sum + pair.*member;
+  return sum * (1.0 / double(pairs.size()));
+}
+
+LinearMap fitted(const std::vector<Pair>& pairs) {
+  LinearMap map{.about = mean_of(pairs, &Pair::from), .shift = mean_of(pairs, &Pair::to)};
+  if (pairs.size() < min_for_affine) return map;
+  std::vector<double> a, b;
+  for (const Pair& pair : pairs) {
+    const PixelPosition d = pair.from - map.about;
+    a.insert(a.end(), {1.0, d.x_px, d.y_px});
+    b.insert(b.end(), {pair.to.x_px, pair.to.y_px});
+  }
+  const auto x = least_squares(a, 3, b, 2);
+  map.shift = {x[0], x[1]};
+  map.matrix = {x[2], x[4], x[3], x[5]};
+  return map;
+}
+
+double scatter_px(const LinearMap& map, const std::vector<Pair>& pairs) {
+  std::vector<double> off;
+  for (const Pair& pair : pairs) off.push_back(distance_px(map(pair.from), pair.to));
+  return off.empty() ? 0.0 : median_of(off) / 1.1774;  // of a Rayleigh distribution
+}
+
+struct StarMatch {
+  LinearMap map;
+  std::vector<Pair> pairs;  // empty: there is no match
+};
+
+/// Pairs that stars at random have within reach.
+double chance_pairs(std::size_t expected, std::size_t seen, const FilteredSequence& sequence,
+                    double reach_px) {
+  return double(expected) * double(seen) * pi * reach_px * reach_px /
+         (double(sequence.columns) * double(sequence.rows));
+}
+
+/// The map from where stars of the reference frame are expected to where a frame shows them.
+StarMatch match_stars(const std::vector<PixelPosition>& expected, const FilteredSequence& sequence,
+                      std::size_t frame) {
+  const auto& seen = sequence.frames[frame].stars;
+  const auto [shift, votes] = common_shift(expected, seen);
+  StarMatch match{.map = {.about = {}, .shift = shift}, .pairs = {}};
+  if (votes < min_votes) return match;
+  for (double reach_px : {6.0, 3.0, 1.5, 1.0, 0.0}) {
+    if (reach_px == 0.0)
+      reach_px = std::max(outlier_scatters * scatter_px(match.map, match.pairs), min_reach_px);
+    match.pairs = pairs_within(match.map, expected, sequence, frame, reach_px);
+    const double by_chance = chance_pairs(expected.size(), seen.size(), sequence, reach_px);
+    if (double(match.pairs.size()) < double(min_votes) + min_over_chance * by_chance)
+      return {.map = {}, .pairs = {}};
+    match.map = fitted(match.pairs);
+  }
+  return match;
+}
+
+}  // namespace
+
+LinearMap LinearMap::inverse() const {
+  const double det = matrix[0] * matrix[3] - matrix[1] * matrix[2];
+  return {.about = shift,
+          .shift = about,
+          .matrix = {matrix[3] / det, -matrix[1] / det, -matrix[2] / det, matrix[0] / det}};
+}
+
+Registration::Registration(const std::vector<SequenceFrame>& frames,
+                           const FilteredSequence& sequence)
+    : reference_(sequence.reference), maps_(frames.size()) {
+  const bool known = std::ranges::none_of(frames, [](const SequenceFrame& frame) {
+    return frame.header.unknown.has(FrameFact::pointing);
+  });
+  for (const SequenceFrame& frame : frames)
+    if (known) wcs_.push_back(&frame.header.wcs);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (i != reference_) fit(sequence, i, frames[i].name);
+}
+
+void Registration::fit(const FilteredSequence& sequence, std::size_t frame,
+                       const std::string& name) {
+  std::vector<PixelPosition> at;
+  for (const PlateSource& star : sequence.frames[reference_].stars)
+    at.push_back(expected(frame, {star.x_px, star.y_px}));
+  const StarMatch match = match_stars(at, sequence, frame);
+  if (match.pairs.empty()) {
+    if (wcs_.empty())
+      throw Error(name +
+                  ": shares too few stars with the frame in the middle of the sequence, and "
+                  "has no WCS");
+    notes_.push_back("sequence: " + name +
+                     ": shares too few stars with the frame in the middle of "
+                     "the sequence: the WCS is taken as exact");
+    return;
+  }
+  std::vector<double> ratios;
+  for (const Pair& pair : match.pairs) ratios.push_back(pair.ratio);
+  maps_[frame] = {match.map, match.map.inverse(), median_of(ratios)};
+}
+
+PixelPosition Registration::expected(std::size_t frame, PixelPosition reference) const {
+  if (wcs_.empty() || frame == reference_) return reference;
+  const auto pixel = wcs_pixel(*wcs_[frame], wcs_direction(*wcs_[reference_], reference));
+  return pixel ? *pixel : PixelPosition{nowhere_px, nowhere_px};
+}
+
+PixelPosition Registration::in_frame(std::size_t frame, PixelPosition reference) const {
+  return maps_[frame].by_stars(expected(frame, reference));
+}
+
+PixelPosition Registration::in_reference(std::size_t frame, PixelPosition place) const {
+  const PixelPosition at = maps_[frame].back(place);
+  if (wcs_.empty() || frame == reference_) return at;
+  const auto pixel = wcs_pixel(*wcs_[reference_], wcs_direction(*wcs_[frame], at));
+  return pixel ? *pixel : PixelPosition{nowhere_px, nowhere_px};
+}
+
+LinearMap Registration::around(std::size_t from, std::size_t to, PixelPosition place,
+                               double reach_px) const {
+  const auto there = [&](PixelPosition p) { return in_frame(to, in_reference(from, p)); };
+  const PixelPosition right = there(place + PixelPosition{reach_px, 0}),
+                      left = there(place - PixelPosition{reach_px, 0}),
+                      below = there(place + PixelPosition{0, reach_px}),
+                      above = there(place - PixelPosition{0, reach_px});
+  const PixelPosition by_x = (right - left) * (0.5 / reach_px),
+                      by_y = (below - above) * (0.5 / reach_px);
+  return {.about = place,
+          .shift = (right + left + below + above) * 0.25,
+          .matrix = {by_x.x_px, by_y.x_px, by_x.y_px, by_y.y_px}};
+}
+
+}  // namespace dmise

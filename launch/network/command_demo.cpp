@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/config/yaml/search_path.h"
+#include "launch/command/commands.h"
+#include "launch/process/supervisor.h"
+
+namespace dmise {
+namespace {
+
+/// Replaces this process by `dmise launch` of the shipped demonstration.
+[[noreturn]] void launch_demo(const std::string& out, const std::vector<std::string>& more) {
+  const std::string scenario = home_directory() + "/launch/scenarios/demo.yaml";
+  if (!std::filesystem::is_regular_file(scenario))
+    throw Error(scenario + ": the demonstration's scenario is missing");
+  std::vector<std::string> arguments{"launch", scenario, "--out", out};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  become_program("dmise", arguments);
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app) {
+  auto out = std::make_shared<std::string>("out/demo");
+  auto* command = app.add_subcommand(
+      "demo",
+      "Launches the shipped demonstration: two minutes of an evening with four sensors. Takes the "
+      "options of launch");
+  command->add_option("--out", *out, "directory of the products")->capture_default_str();
+  command->allow_extras();
+  command->callback([command, out] { launch_demo(*out, command->remaining()); });
+}
+
+}  // namespace dmise

@@ -1,0 +1,234 @@
+#include <poll.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/formatted.h"
+#include "launch/command/commands.h"
+#include "launch/command/common_options.h"
+#include "launch/command/notes.h"
+#include "launch/run/prepare_run.h"
+#include "launch/run/resume_point.h"
+#include "nodes/runtime/process/event.h"
+#include "nodes/runtime/process/host_port.h"
+#include "sensors/alpaca/alpaca_server.h"
+#include "sensors/alpaca/discovery.h"
+#include "sensors/indi/indi_server.h"
+#include "sensors/observatory/commanded_frames.h"
+
+namespace dmise {
+namespace {
+
+struct ObservatoryOptions {
+  std::string scenario, out, commands, listen = "127.0.0.1:11111", tokens;
+  std::string indi;                   // empty: not served
+  std::optional<std::uint64_t> seed;  // instead of the scenario's
+  ObservatorySettings devices;
+  double rate = 1.0;
+  int discovery_port = alpaca_discovery_port;
+  bool no_discovery = false, force = false;
+};
+
+HostPort address_of(const std::string& option, const std::string& text) {
+  const auto address = host_and_port(text);
+  if (!address) throw ConfigError(option + ": must be HOST:PORT or [IPv6]:PORT, got " + text);
+  return *address;
+}
+
+AlpacaServerOptions alpaca_options(const ObservatoryOptions& options) {
+  const HostPort address = address_of("--listen", options.listen);
+  AlpacaServerOptions server{.host = address.host, .location = options.scenario};
+  server.port = std::uint16_t(address.port);
+  if (!options.tokens.empty()) server.tokens = read_access_tokens(options.tokens);
+  server.discovery_port = options.no_discovery ? 0 : options.discovery_port;
+  return server;
+}
+
+/// The servers of an observatory. They are bound before anything is written.
+struct Doors {
+  explicit Doors(const ObservatoryOptions& options)
+      : alpaca_host(address_of("--listen", options.listen).host), alpaca(alpaca_options(options)) {
+    if (options.indi.empty()) return;
+    const HostPort address = address_of("--indi", options.indi);
+    indi_host = address.host;
+    indi.emplace(IndiServerOptions{.host = indi_host, .port = std::uint16_t(address.port)});
+  }
+
+  void serve(Observatory& observatory) {
+    alpaca.serve(observatory);
+    if (indi) indi->serve(observatory);
+  }
+  /// Tells where they are.
+  void print() const {
+    if (!alpaca.not_discovered().empty())
+      print_note("clients do not find it by discovery: " + alpaca.not_discovered());
+    std::string text =
+        "ASCOM Alpaca at http://" + text_of(HostPort{alpaca_host, alpaca.port()}) + "/setup";
+    if (indi) text += ", INDI at " + text_of(HostPort{indi_host, indi->port()});
+    std::printf("%s; Ctrl-C ends the night\n", text.c_str());
+    std::fflush(stdout);
+  }
+
+  std::string alpaca_host, indi_host;
+  AlpacaServer alpaca;
+  std::optional<IndiServer> indi;
+};
+
+/// Reads a scenario and leaves what is commanded.
+Scenario load_commanded(const ObservatoryOptions& options) {
+  Scenario scenario = load_scenario(options.scenario);
+  if (options.seed) scenario.seed = *options.seed;
+  check_observatory(scenario);
+  auto sensors = commanded_sensors(scenario);
+  if (sensors.size() < scenario.sensors.size())
+    print_note("only cameras at sites are commanded: " + std::to_string(sensors.size()) + " of " +
+               std::to_string(scenario.sensors.size()) + " sensors");
+  scenario.sensors = std::move(sensors);
+  scenario.fusion.reset();
+  scenario.network.publish_states = false;  // nobody outside this process can take them
+  return scenario;
+}
+
+/// What there is to say of a scenario wherever its cameras point.
+void print_notes(const Scenario& scenario, const ScenarioInputs& scene) {
+  for (const std::string& warning : scenario.warnings) print_warning(warning);
+  for (const std::string& note : scene.population.notes) print_note(note);
+  for (const std::string& note : make_clock(scenario).warnings(scenario.duration)) print_note(note);
+}
+
+/// Empties the directory, or refuses one that has products. Nights are never continued.
+void take_directory(RunDirectory& directory, bool force) {
+  directory.check_sensor_directories();
+  const bool used =
+      directory.content() != RunDirectory::Content::no_run || !directory.in_the_way().empty();
+  if (used && !force)
+    throw ConfigError(directory.path() +
+                      ": contains products; --force replaces them, --out writes elsewhere");
+  if (used) directory.clear(true);
+  mark_begun(directory, {});
+}
+
+void wait_for_stop() {
+  pollfd stop{.fd = stop_signal().fd(), .events = POLLIN, .revents = 0};
+  while (!stop_signal().is_set()) poll(&stop, 1, 1000);
+}
+
+RunOutcome serve(const ObservatoryOptions& options, std::unique_ptr<Doors> doors,
+                 const Scenario& scenario, const ScenarioInputs& scene,
+                 const RunDirectory& directory) {
+  RunOutcome outcome{.how = "an observatory"};
+  std::atomic<bool> failed = false;
+  const WallClock clock(options.rate);
+  {
+    Observatory observatory(scenario, scene, directory.digest(), directory.path(), options.devices,
+                            clock, [&](const std::string& reason) {
+                              failed = true;
+                              print_warning(reason);
+                            });
+    doors->serve(observatory);
+    doors->print();
+    wait_for_stop();
+    doors.reset();  // before what they serve
+  }
+  if (failed) {
+    outcome.status = "failed";
+    outcome.reason = "a frame could not be made or written";
+  }
+  return outcome;
+}
+
+RunOutcome replay(const ObservatoryOptions& options, const std::vector<CommandedExposure>& night,
+                  const Scenario& scenario, const ScenarioInputs& scene,
+                  const RunDirectory& directory) {
+  RunOutcome outcome{.how = "an observatory's commands"};
+  try {
+    replay_night(scenario, scene, night, directory.digest(), directory.path(),
+                 options.devices.threads,
+                 [](const CommandedExposure&) { return !stop_signal().is_set(); });
+    if (stop_signal().is_set()) outcome.status = "interrupted";
+  } catch (const Error& error) {
+    outcome.status = "failed";
+    outcome.reason = error.what();
+  }
+  return outcome;
+}
+
+void observe(const ObservatoryOptions& options) {
+  const Scenario scenario = load_commanded(options);
+  const ScenarioInputs scene = load_scene(scenario, make_clock(scenario));
+  std::vector<CommandedExposure> night;
+  std::unique_ptr<Doors> doors;
+  if (options.commands.empty()) {
+    doors = std::make_unique<Doors>(options);
+  } else {
+    night = read_night(options.commands, scenario);
+    print_note(counted(night.size(), "exposure") + " of " + options.commands);
+  }
+  print_notes(scenario, scene);
+  RunDirectory directory(options.out, scenario, scenario_digest(scenario));
+  take_directory(directory, options.force);
+  stop_signal();
+  const auto start = std::chrono::steady_clock::now();
+  RunOutcome outcome = doors ? serve(options, std::move(doors), scenario, scene, directory)
+                             : replay(options, night, scenario, scene, directory);
+  outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  finish_run(directory, scenario, outcome);
+}
+
+}  // namespace
+
+void add_observatory_command(CLI::App& app) {
+  auto options = std::make_shared<ObservatoryOptions>();
+  auto* command = app.add_subcommand(
+      "observatory",
+      "Lets an observatory's software point and expose a scenario's cameras, by ASCOM Alpaca "
+      "and INDI");
+  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command->add_option("--out", options->out, "directory of the products")
+      ->default_val("out/observatory");
+  command->add_option("--commands", options->commands,
+                      "night.jsonl of an observatory: makes its products again, without a server");
+  command
+      ->add_option("--listen", options->listen,
+                   "IP address and port; port 0: any free port; addresses other than loopback need "
+                   "--tokens")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--indi", options->indi,
+          "serves INDI as well, at this loopback address and port; 127.0.0.1:7624 if none is "
+          "given; INDI knows no tokens")
+      ->expected(0, 1)
+      ->default_str("127.0.0.1:" + std::to_string(indi_port));
+  command->add_option(
+      "--tokens", options->tokens,
+      "file with `view TOKEN` and `operator TOKEN`: who may read, also command; the "
+      "token is the password");
+  command
+      ->add_option("--discovery-port", options->discovery_port,
+                   "UDP port at which clients ask for servers")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 65535));
+  command->add_flag("--no-discovery", options->no_discovery, "clients must know the address");
+  add_number_option(*command, "--rate", options->rate, 0.01, 1000.0,
+                    "simulated seconds per second");
+  add_number_option(*command, "--slew-rate", options->devices.slew_rate_deg_per_s, 0.01, 100.0,
+                    "of the telescopes [deg/s]");
+  add_number_option(*command, "--settle", options->devices.settle_s, 0.0, 100.0,
+                    "of the telescopes after a slew [s]");
+  add_number_option(*command, "--readout", options->devices.readout_s, 0.0, 100.0,
+                    "between the end of an exposure and its image [s]");
+  add_threads_option(*command, options->devices.threads,
+                     "number of threads of each camera; the products do not depend on it");
+  add_seed_option(*command, options->seed, "seed of the random numbers, instead of the scenario's");
+  command->add_flag("--force", options->force, "replace the products in the directory");
+  command->callback([options] { observe(*options); });
+}
+
+}  // namespace dmise

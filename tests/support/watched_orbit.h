@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/forces/earth_surroundings.h"
+#include "core/frames/geodesy.h"
+#include "core/orbit/motion_state.h"
+#include "core/photometry/diffuse_sphere.h"
+#include "core/tracking/angle_observation.h"
+
+namespace dmise {
+
+/// A sensor on the ground that looks at an object whenever it can.
+struct OrbitWatcher {
+  std::string name;
+  Site site;
+  double sigma_rad = 0.0;  // of a direction, along each axis
+  double limiting_magnitude = 0.0;
+  double cadence_s = 30.0;
+  double least_elevation_rad = 0.0;
+  int most_of_a_pass = 1000000;  // exposures
+};
+
+/// Eight all-sky cameras: 20 s exposures every 30 s to magnitude 7, errors of 20 arcsec. Two
+/// telescopes of 0.4 m, one in either hemisphere: three exposures of a pass at 1 arcsec, as a task
+/// of the fusion node. Sites from 78 N to 44 S.
+std::vector<OrbitWatcher> wide_network();
+/// The same cameras at the eight sites of launch/scenarios/survey.yaml, 40 N to 32 S.
+std::vector<OrbitWatcher> survey_network();
+
+/// What watchers detect of one object on a given path, without pixels: directions with errors while
+/// the Sun lights it, in the dark, above an elevation. Passes are apart by a quarter of an hour.
+class WatchedOrbit {
+ public:
+  using Truth = std::function<MotionState<Gcrs>(SimTime)>;
+  WatchedOrbit(const Clock& clock, const Truth& truth, SimTime from, SimTime to,
+               const DiffuseSphere& sphere);
+
+  struct Draw {
+    double detection_probability = 0.83;  // as the score of the all-sky camera has it
+    std::uint64_t seed = 1;
+  };
+  /// Passes, one after another, each in order of time.
+  std::vector<std::vector<AngleObservation>> passes(const std::vector<OrbitWatcher>& watchers,
+                                                    const Draw& draw) const;
+
+ private:
+  struct Instant {
+    SimTime time;
+    MotionState<Gcrs> state;
+    Rotation<Gcrs, Itrs> gcrs_from_itrs;
+    Vec<Gcrs> sun_m;
+    bool lit = false;
+  };
+  bool sees(const OrbitWatcher& watcher, const Instant& now) const;
+
+  DiffuseSphere sphere_;
+  std::vector<Instant> instants_;
+};
+
+}  // namespace dmise
