@@ -10,9 +10,12 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/printable.h"
+#include "core/time/iso8601.h"
 #include "launch/command/commands.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
+#include "launch/observatory/run_clock.h"
 #include "launch/run/prepare_run.h"
 #include "launch/run/resume_point.h"
 #include "nodes/runtime/process/event.h"
@@ -28,6 +31,7 @@ namespace {
 struct ObservatoryOptions {
   std::string scenario, out, commands, listen = "127.0.0.1:11111", tokens;
   std::string indi;                   // empty: not served
+  std::string run, keys;              // a run whose time the night has; empty: the clock of this machine
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   ObservatorySettings devices;
   double rate = 1.0;
@@ -114,17 +118,34 @@ void take_directory(RunDirectory& directory, bool force) {
   mark_begun(directory, {});
 }
 
-void wait_for_stop() {
+/// The clock of the run that the options name; null without.
+std::unique_ptr<RunClock> run_clock(const ObservatoryOptions& options, const Scenario& scenario) {
+  if (options.run.empty()) return nullptr;
+  auto clock = std::make_unique<RunClock>(options.run, Security(options.keys, operator_name));
+  const std::string start = format_utc(parse_utc(scenario.start_utc), 6);
+  if (!clock->start_utc().empty() && clock->start_utc() != start)
+    throw ConfigError("--run: the run begins at " + printable(clock->start_utc()) + ", " +
+                      options.scenario + " at " + start);
+  return clock;
+}
+
+/// Waits for Ctrl-C, or for the end of the run; returns why the run has ended, if it has.
+std::string wait_for_end(const RunClock* run) {
   pollfd stop{.fd = stop_signal().fd(), .events = POLLIN, .revents = 0};
-  while (!stop_signal().is_set()) poll(&stop, 1, 1000);
+  while (!stop_signal().is_set()) {
+    if (run && !run->ended().empty()) return run->ended();
+    poll(&stop, 1, run ? 100 : 1000);
+  }
+  return {};
 }
 
 RunOutcome serve(const ObservatoryOptions& options, std::unique_ptr<Doors> doors,
-                 const Scenario& scenario, const ScenarioInputs& scene,
+                 const RunClock* run, const Scenario& scenario, const ScenarioInputs& scene,
                  const RunDirectory& directory) {
   RunOutcome outcome{.how = "an observatory"};
   std::atomic<bool> failed = false;
-  const WallClock clock(options.rate);
+  const WallClock wall_clock(options.rate);
+  const ObservatoryClock& clock = run ? static_cast<const ObservatoryClock&>(*run) : wall_clock;
   {
     Observatory observatory(scenario, scene, directory.digest(), directory.path(), options.devices,
                             clock, [&](const std::string& reason) {
@@ -133,7 +154,8 @@ RunOutcome serve(const ObservatoryOptions& options, std::unique_ptr<Doors> doors
                             });
     doors->serve(observatory);
     doors->print();
-    wait_for_stop();
+    if (const std::string end = wait_for_end(run); !end.empty())
+      print_note("the night ends: " + printable(end));
     doors.reset();  // before what they serve
   }
   if (failed) {
@@ -164,7 +186,9 @@ void observe(const ObservatoryOptions& options) {
   const ScenarioInputs scene = load_scene(scenario, make_clock(scenario));
   std::vector<CommandedExposure> night;
   std::unique_ptr<Doors> doors;
+  std::unique_ptr<RunClock> run;
   if (options.commands.empty()) {
+    run = run_clock(options, scenario);
     doors = std::make_unique<Doors>(options);
   } else {
     night = read_night(options.commands, scenario);
@@ -175,7 +199,7 @@ void observe(const ObservatoryOptions& options) {
   take_directory(directory, options.force);
   stop_signal();
   const auto start = std::chrono::steady_clock::now();
-  RunOutcome outcome = doors ? serve(options, std::move(doors), scenario, scene, directory)
+  RunOutcome outcome = doors ? serve(options, std::move(doors), run.get(), scenario, scene, directory)
                              : replay(options, night, scenario, scene, directory);
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   finish_run(directory, scenario, outcome);
@@ -192,7 +216,7 @@ void add_observatory_command(CLI::App& app) {
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_option("--out", options->out, "directory of the products")
       ->default_val("out/observatory");
-  command->add_option("--commands", options->commands,
+  auto* commands = command->add_option("--commands", options->commands,
                       "night.jsonl of an observatory: makes its products again, without a server");
   command
       ->add_option("--listen", options->listen,
@@ -216,8 +240,13 @@ void add_observatory_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 65535));
   command->add_flag("--no-discovery", options->no_discovery, "clients must know the address");
-  add_number_option(*command, "--rate", options->rate, 0.01, 1000.0,
-                    "simulated seconds per second");
+  auto* rate = add_number_option(*command, "--rate", options->rate, 0.01, 1000.0,
+                                 "simulated seconds per second");
+  auto* run = command->add_option("--run", options->run,
+                                  "address of the time-master of a paced run that begins when the "
+                                  "scenario does: the night has its time, and ends with it");
+  run->excludes(rate)->excludes(commands);
+  command->add_option("--keys", options->keys, "directory with operator.key, for --run")->needs(run);
   add_number_option(*command, "--slew-rate", options->devices.slew_rate_deg_per_s, 0.01, 100.0,
                     "of the telescopes [deg/s]");
   add_number_option(*command, "--settle", options->devices.settle_s, 0.0, 100.0,

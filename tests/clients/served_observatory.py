@@ -31,8 +31,8 @@ def free_udp_port():
 class Served:
     """`dmise observatory` on a free port, until it is ended as by Ctrl-C."""
 
-    def __init__(self, binary, out, *arguments):
-        self.process = subprocess.Popen([binary, "observatory", SCENARIO, "--out", out, "--listen", "127.0.0.1:0", *arguments],
+    def __init__(self, binary, out, *arguments, scenario=SCENARIO):
+        self.process = subprocess.Popen([binary, "observatory", scenario, "--out", out, "--listen", "127.0.0.1:0", *arguments],
                                         stdout=subprocess.PIPE, text=True)
 
     def __enter__(self):
@@ -46,7 +46,8 @@ class Served:
         return self
 
     def __exit__(self, *_):
-        self.process.send_signal(signal.SIGINT)
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
         self.rest = self.process.communicate(timeout=60)[0]
 
 
@@ -65,8 +66,8 @@ def file_of(out, sensor, frame):
     return astropy.io.fits.open(path_of(out, sensor, frame))[0]
 
 
-def same_again(binary, out, directory):
+def same_again(binary, out, directory, scenario=SCENARIO):
     again = directory / "again"
-    subprocess.run([binary, "observatory", SCENARIO, "--commands", out / "night.jsonl", "--out", again], check=True,
+    subprocess.run([binary, "observatory", scenario, "--commands", out / "night.jsonl", "--out", again], check=True,
                    stdout=subprocess.PIPE)
     check_same(again, out, f"the night of {len(journal(out))} exposures is made again, byte for byte")
