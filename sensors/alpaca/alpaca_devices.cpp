@@ -68,7 +68,10 @@ const std::vector<Member>& common_members() {
       {"commandbool", nullptr, no_commands},
       {"commandstring", nullptr, no_commands},
       {"connect", nullptr, connect, false},
-      {"connected", [](const MemberCall& c) { return answer_of(c.session.connected); },
+      {"connected",
+       [](const MemberCall& c) {
+         return answer_of(c.session.connected && c.observatory.has_link(c.station));
+       },
        [](const MemberCall& c) { return c.given.flag("Connected") ? connect(c) : disconnect(c); },
        false},
       {"connecting", [](const MemberCall&) { return answer_of(false); }, nullptr, false},
@@ -127,6 +130,8 @@ MemberAnswer AlpacaDevices::call(const DeviceCall& call, const AlpacaParameters&
   const MemberCall member_call{*kind, observatory_, call.number, sessions[call.number], parameters};
   if (member->needs_connection && !member_call.session.connected)
     throw DeviceError(DeviceFault::not_connected, "the device is not connected");
+  if (member->needs_connection && !observatory_.has_link(call.number))
+    throw DeviceError(DeviceFault::driver, "the device does not answer: its link is lost");
   return act(member_call);
 }
 

@@ -17,6 +17,7 @@ constexpr int monochrome = 0;
 
 const Optics& optics(const Call& c) { return c.sensor().camera.optics; }
 const Detector& detector(const Call& c) { return c.sensor().camera.detector; }
+double told_gain(const Call& c) { return c.observatory.told_gain_e_per_dn(c.station); }
 
 template <class Ask>
 MemberAnswer of_camera(const Call& c, const Ask& ask) {
@@ -63,7 +64,7 @@ std::vector<Member> camera_facts() {
       {"cameraysize", [](const Call& c) { return answer_of(optics(c).rows); }},
       {"pixelsizex", [](const Call& c) { return answer_of(optics(c).pixel_pitch_m * 1e6); }},
       {"pixelsizey", [](const Call& c) { return answer_of(optics(c).pixel_pitch_m * 1e6); }},
-      {"electronsperadu", [](const Call& c) { return answer_of(detector(c).gain_e_per_dn); }},
+      {"electronsperadu", [](const Call& c) { return answer_of(told_gain(c)); }},
       {"fullwellcapacity", [](const Call& c) { return answer_of(detector(c).full_well_e); }},
       {"maxadu",
        [](const Call& c) {
@@ -92,7 +93,7 @@ std::vector<Member> camera_facts() {
       {"gains",
        [](const Call& c) {
          return answer_of(
-             std::vector<std::string>{formatted("%g e-/DN", detector(c).gain_e_per_dn)});
+             std::vector<std::string>{formatted("%g e-/DN", told_gain(c))});
        }},
       {"gain", [](const Call&) { return answer_of(0); },
        [](const Call& c) { return choose_first(c, "Gain"); }},

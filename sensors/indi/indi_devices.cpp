@@ -208,6 +208,7 @@ std::string IndiDevices::write(Device& device, const IndiProperty& property,
   const IndiCall call = call_of(device);
   IndiState& after = device.session.after[property.title.name];
   try {
+    if (!observatory_.has_link(device.station)) refuse("the device does not answer: its link is lost");
     property.write(call, given_to(vector_of(device, property, property.read(call)), given));
     after = IndiState::ok;
     return {};
@@ -269,7 +270,8 @@ std::vector<IndiNews> IndiDevices::changes(const WantsBlob& wants) {
   std::vector<IndiNews> news;
   for (Device& device : devices_)
     for (Property& property : device.properties)
-      if (device.session.connected && property.told) add_changes(device, property, wants, news);
+      if (device.session.connected && property.told && observatory_.has_link(device.station))
+        add_changes(device, property, wants, news);
   return news;
 }
 

@@ -85,6 +85,23 @@ struct Observatory::Station {
         weather([this](SimTime t) { return sky.conditions(t); }),
         frames(scenario, scene, sensor.name, digest, directory, settings.threads) {}
 
+  const Malfunction* acting(MalfunctionKind kind, SimTime t) const {
+    return dmise::acting(sensor.malfunctions, kind, t.seconds());
+  }
+  double readout_s(SimTime end) const {
+    const Malfunction* slow = acting(MalfunctionKind::slow_download, end);
+    return slow ? slow->download_s : camera.readout_s();
+  }
+  /// Where the camera points while the mount is stopped: as when that began. To be called before
+  /// whatever moves the telescope.
+  std::optional<CommandedPointing> stopped_pointing(SimTime now) {
+    const Malfunction* stop = acting(MalfunctionKind::stopped_mount, now);
+    if (stop && stop != stopped)
+      stopped_at = telescope.standing_at(telescope.axis(sim_seconds(stop->at_s)));
+    stopped = stop;
+    return stop ? std::optional(stopped_at) : std::nullopt;
+  }
+
   SensorConfig sensor;
   ScenarioSky sky;
   std::mutex mutex;  // guards what follows but `frames`, which the thread alone uses
@@ -95,6 +112,8 @@ struct Observatory::Station {
   FilterWheel wheel;
   Cover cover;
   WeatherStation weather;
+  const Malfunction* stopped = nullptr;       // of the mount
+  CommandedPointing stopped_at;
   std::optional<CommandedExposure> exposure;  // whose frame is to be made
   std::uint32_t frames_made = 0;
   bool ends = false;
@@ -145,7 +164,19 @@ std::string Observatory::utc(SimTime t) const {
 void Observatory::use(std::size_t station, const std::function<void(const Devices&)>& work) {
   Station& s = *stations_.at(station);
   const std::lock_guard lock(s.mutex);
-  work({s.telescope, s.camera, s.focuser, s.wheel, s.cover, s.weather, clock_.now()});
+  const SimTime now = clock_.now();
+  s.stopped_pointing(now);
+  work({s.telescope, s.camera, s.focuser, s.wheel, s.cover, s.weather, now});
+}
+
+bool Observatory::has_link(std::size_t station) const {
+  return !stations_.at(station)->acting(MalfunctionKind::lost_link, clock_.now());
+}
+
+double Observatory::told_gain_e_per_dn(std::size_t station) const {
+  const Malfunction* wrong =
+      stations_.at(station)->acting(MalfunctionKind::wrong_gain, clock_.now());
+  return wrong ? wrong->gain_e_per_dn : sensor(station).camera.detector.gain_e_per_dn;
 }
 
 double Observatory::sidereal_time_rad(std::size_t station) const {
@@ -184,6 +215,7 @@ void Observatory::follow_satellite(std::size_t station, const std::string& eleme
   const auto path = s.sky.path_of(elements_in(elements));
   const std::lock_guard lock(s.mutex);
   const SimTime now = clock_.now();
+  s.stopped_pointing(now);
   Vec<Enu> last = path->seen(now);
   const auto seen_or_last = [path, last](SimTime t) mutable {
     try {
@@ -214,13 +246,16 @@ void Observatory::start_exposure(std::size_t station, double exposure_s, bool li
     throw DeviceError(DeviceFault::invalid_operation,
                       "the exposure would not end before the scenario does");
   const SimTime end = now + exposure.length;
+  const auto stopped = s.stopped_pointing(now);
   exposure.pointing = s.telescope.pointing_during(now, end);
+  if (stopped) exposure.pointing = *stopped;
   s.focuser.need_still(now);
   s.wheel.need_still(now);
   s.cover.need_still(now);
   exposure.focus_um = s.focuser.focus_um(now);
   exposure.filter = s.wheel.goal();
-  exposure.dark = !light || s.cover.state(now) == CoverState::closed;
+  exposure.dark = !light || s.cover.state(now) == CoverState::closed ||
+                  s.acting(MalfunctionKind::stuck_shutter, now);
   hold_until(s, end);
   s.camera.open(exposure);
   s.exposure = std::move(exposure);
@@ -276,7 +311,8 @@ void Observatory::make_frames(Station& station) {
 /// early is made again, one that was aborted is forgotten.
 void Observatory::make_frame(Station& station, std::unique_lock<std::mutex>& lock) {
   const CommandedExposure exposure = *station.exposure;
-  const SimTime ready = exposure.start + exposure.length + sim_seconds(station.camera.readout_s());
+  const SimTime end = exposure.start + exposure.length;
+  const SimTime ready = end + sim_seconds(station.readout_s(end));
   station.unwanted = false;
   lock.unlock();
   FrameProducts frame;

@@ -98,6 +98,11 @@ class Observatory {
     use(station, [&](const Devices& devices) { value = ask(devices); });
     return *std::move(value);
   }
+  // Malfunctions of the scenario.
+  /// Whether the devices answer.
+  bool has_link(std::size_t station) const;
+  /// The gain that the camera tells [e-/DN].
+  double told_gain_e_per_dn(std::size_t station) const;
   double sidereal_time_rad(std::size_t station) const;
   // Places of the true equator and equinox of `t`: geocentric apparent places (ERFA), with the
   // Earth's aberration and the Sun's deflection of light, without air.

@@ -394,20 +394,25 @@ double Telescope::north_roll_deg(const Vec<Enu>& d) const {
 CommandedPointing Telescope::pointing_during(SimTime now, SimTime end) {
   if (is_slewing(now)) refuse("the telescope slews, which no frame shows");
   if (is_pulse_guiding(now)) refuse("the telescope is guided, which no frame shows");
-  const double flip_deg = side_ == PierSide::west ? 180.0 : 0.0;  // through the pole
-  CommandedPointing p{.follows = path_.follows};
-  if (!path_.follows) {
-    const Horizontal h = horizontal(path_.stands);
-    p.longitude_deg = std::min(h.azimuth_rad / deg, 360.0);
-    p.latitude_deg = h.elevation_rad / deg;
-    p.roll_deg = north_roll_deg(path_.stands) + flip_deg;
-    return p;
-  }
+  if (!path_.follows) return standing_at(path_.stands);
   if (elevation_deg(on_path(end)) < settings_.min_elevation_deg)
     refuse("the telescope reaches its least elevation before the exposure ends");
-  p = along_path(now, end);
-  p.roll_deg = settings_.roll_deg + flip_deg;
+  CommandedPointing p = along_path(now, end);
+  p.roll_deg = settings_.roll_deg + flip_deg();
   return p;
+}
+
+Vec<Enu> Telescope::axis(SimTime now) {
+  advance(now);
+  return direction(now);
+}
+
+CommandedPointing Telescope::standing_at(const Vec<Enu>& axis) const {
+  const Horizontal h = horizontal(axis);
+  return {.follows = false,
+          .longitude_deg = std::min(h.azimuth_rad / deg, 360.0),
+          .latitude_deg = h.elevation_rad / deg,
+          .roll_deg = north_roll_deg(axis) + flip_deg()};
 }
 
 /// Of what moves among the stars, with the mean rates of the exposure.

@@ -79,6 +79,10 @@ class Telescope {
   /// Where a camera points during an exposure that begins now. Refuses while it slews, guides, or
   /// if it would reach the least elevation.
   CommandedPointing pointing_during(SimTime now, SimTime end);
+  /// Where the axis is.
+  Vec<Enu> axis(SimTime now);
+  /// Where a camera points whose telescope stands still.
+  CommandedPointing standing_at(const Vec<Enu>& axis) const;
   /// A shutter is open until `end`: what moves the telescope otherwise is refused until then.
   void hold_until(SimTime end) { held_until_ = end; }
 
@@ -115,6 +119,7 @@ class Telescope {
   void need_elevation(const Vec<Enu>& direction) const;
   PierSide side_of(const Vec<Enu>& direction) const;
   Vec<Enu> home() const;
+  double flip_deg() const { return side_ == PierSide::west ? 180.0 : 0.0; }  // through the pole
   double north_roll_deg(const Vec<Enu>& direction) const;
 
   TelescopeSettings settings_;

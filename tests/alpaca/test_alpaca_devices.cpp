@@ -17,8 +17,10 @@ constexpr int bad_request = 400, not_implemented = 0x400, invalid_value = 0x401,
 
 struct Bench : ServedObservatory {
   explicit Bench(const std::string& name,
-                 std::shared_ptr<const ObservatoryClock> time = std::make_shared<WallClock>(100.0))
-      : ServedObservatory(testing::TempDir() + "/" + name, std::move(time)), devices(observatory) {
+                 std::shared_ptr<const ObservatoryClock> time = std::make_shared<WallClock>(100.0),
+                 const std::string& keys = {})
+      : ServedObservatory(testing::TempDir() + "/" + name, std::move(time), keys),
+        devices(observatory) {
     put("camera", "connected", "Connected=true");
     put("telescope", "connected", "Connected=true");
   }
@@ -61,6 +63,26 @@ struct Bench : ServedObservatory {
 
   AlpacaDevices devices;
 };
+
+TEST(AlpacaDevices, DoNotAnswerWhileTheirLinkIsLostAndTellAWrongGain) {
+  const auto clock = std::make_shared<ManualClock>();
+  Bench bench("alpaca-malfunctions", clock,
+              "    malfunctions:\n"
+              "      - {kind: lost_link, at_s: 100, for_s: 50}\n"
+              "      - {kind: wrong_gain, at_s: 200, for_s: 50, gain_e_per_dn: 3.5}\n");
+  constexpr int driver = 0x500;
+  EXPECT_EQ(bench.get("camera", "electronsperadu"), "2");
+  clock->set(120.0);
+  EXPECT_EQ(bench.get("camera", "connected"), "false");
+  EXPECT_EQ(bench.get_fault("camera", "electronsperadu"), driver);
+  EXPECT_EQ(bench.put("telescope", "tracking", "Tracking=true"), driver);
+  clock->set(150.0);
+  EXPECT_EQ(bench.get("camera", "connected"), "true");
+  EXPECT_EQ(bench.put("telescope", "tracking", "Tracking=true"), 0);
+  clock->set(200.0);
+  EXPECT_EQ(bench.get("camera", "electronsperadu"), "3.5");
+  EXPECT_EQ(bench.get("camera", "gains"), "[\"3.5 e-/DN\"]");
+}
 
 TEST(AlpacaDevices, AnswerOnlyWhenConnected) {
   Bench bench("alpaca-connected");

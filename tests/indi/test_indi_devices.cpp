@@ -17,8 +17,8 @@ using testing::HasSubstr;
 const std::string telescope = "eye telescope", camera = "eye camera";
 
 struct Bench : ServedObservatory {
-  explicit Bench(const std::string& name)
-      : ServedObservatory(testing::TempDir() + "/" + name, std::make_shared<ManualClock>()),
+  explicit Bench(const std::string& name, const std::string& keys = {})
+      : ServedObservatory(testing::TempDir() + "/" + name, std::make_shared<ManualClock>(), keys),
         devices(observatory) {
     set(telescope, IndiKind::toggle, "CONNECTION", {{"CONNECT", "On"}});
     set(camera, IndiKind::toggle, "CONNECTION", {{"CONNECT", "On"}});
@@ -43,6 +43,17 @@ struct Bench : ServedObservatory {
 
   IndiDevices devices;
 };
+
+TEST(IndiDevices, AreSilentWhileTheirLinkIsLost) {
+  Bench bench("indi-link", "    malfunctions: [{kind: lost_link, at_s: 100, for_s: 50}]\n");
+  bench.changes();
+  bench.pass(120.0);
+  EXPECT_TRUE(bench.changes().empty());
+  EXPECT_THAT(bench.set(telescope, IndiKind::toggle, "TELESCOPE_TRACK_STATE", {{"TRACK_ON", "On"}}),
+              HasSubstr("its link is lost"));
+  bench.pass(160.0);
+  EXPECT_FALSE(bench.changes().empty());
+}
 
 TEST(IndiDevices, AreDefinedWhenTheyAreConnected) {
   Bench bench("indi-connect");

@@ -10,9 +10,10 @@ namespace dmise {
 
 /// An observatory of one small camera in `directory`, which is made anew.
 struct ServedObservatory {
-  ServedObservatory(const std::string& directory, std::shared_ptr<const ObservatoryClock> time)
+  ServedObservatory(const std::string& directory, std::shared_ptr<const ObservatoryClock> time,
+                    const std::string& keys = {})
       : out(made_anew(directory)),
-        scenario(small_observatory(out + "/scenario.yaml")),
+        scenario(small_observatory(out + "/scenario.yaml", keys)),
         scene(load_scene(scenario, make_clock(scenario))),
         clock(std::move(time)),
         observatory(scenario, scene, "digest", out, {.readout_s = 0.0}, *clock,

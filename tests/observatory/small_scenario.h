@@ -7,7 +7,8 @@
 namespace dmise {
 
 /// A scenario of one small camera at Huntsville, without stars and objects, written to `path`.
-inline Scenario small_observatory(const std::string& path) {
+/// `keys`: more of the camera's sensor.
+inline Scenario small_observatory(const std::string& path, const std::string& keys = {}) {
   std::ofstream(path) << R"(simulation: {start: 2018-01-21T00:30:00Z, duration_s: 28800, tick_s: 10}
 sensors:
   - name: eye
@@ -23,8 +24,7 @@ sensors:
     cadence_s: 10
     mask_deg: 10
     weather: {pressure_hpa: 989, temperature_c: 13.7, humidity: 0.5}
-output: {png: false}
-)";
+)" << keys << "output: {png: false}\n";
   return load_scenario(path);
 }
 

@@ -31,9 +31,9 @@ std::string new_directory(const std::string& name) {
 }
 
 struct Night {
-  explicit Night(const std::string& name)
+  explicit Night(const std::string& name, const std::string& keys = {})
       : out(new_directory(name)),
-        scenario(small_observatory(out + "/scenario.yaml")),
+        scenario(small_observatory(out + "/scenario.yaml", keys)),
         scene(load_scene(scenario, make_clock(scenario))),
         observatory(scenario, scene, "digest", out, {.readout_s = 0.0}, clock,
                     [](const std::string& reason) { ADD_FAILURE() << reason; }) {
@@ -166,6 +166,49 @@ TEST(Observatory, WhatMovesWaitsForTheShutterAndTheShutterForIt) {
   night.observatory.abort_exposure(0);
   night.observatory.use(0, [](const auto& d) { EXPECT_NO_THROW(d.cover.close(d.now)); });
   EXPECT_THROW(night.observatory.start_exposure(0, 1.0), DeviceError);
+}
+
+// The telescope tells that it follows the stars, and stands where it was when its mount stopped.
+TEST(Observatory, AStoppedMountAndAStuckShutterAreInTheFramesAndTheJournal) {
+  Night night("observatory-malfunctions",
+              "    malfunctions:\n"
+              "      - {kind: stopped_mount, at_s: 100, for_s: 100}\n"
+              "      - {kind: stuck_shutter, at_s: 300, for_s: 10}\n");
+  int frames = 0;
+  const auto exposed_at = [&](double t_s) {
+    night.clock.set(t_s);
+    night.observatory.start_exposure(0, 1.0);
+    night.clock.set(t_s + 2.0);
+    night.wait_for_frames(++frames);
+    return read_night(night.out + "/night.jsonl", night.scenario).back();
+  };
+  EXPECT_TRUE(exposed_at(90.0).pointing.follows);
+  night.clock.set(100.0);
+  const Horizontal there =
+      night.observatory.of(0, [](const auto& d) { return d.telescope.horizontal_place(d.now); });
+  for (const double t_s : {110.0, 190.0}) {
+    const CommandedPointing pointing = exposed_at(t_s).pointing;
+    EXPECT_FALSE(pointing.follows);
+    EXPECT_NEAR(pointing.latitude_deg, there.elevation_rad / deg, 1e-9);
+    EXPECT_TRUE(
+        night.observatory.of(0, [](const auto& d) { return d.telescope.is_tracking(d.now); }));
+  }
+  EXPECT_TRUE(exposed_at(210.0).pointing.follows);
+  EXPECT_TRUE(exposed_at(300.0).dark);
+  EXPECT_FALSE(exposed_at(310.0).dark);
+}
+
+TEST(Observatory, ASlowDownloadDelaysTheImageAndNothingElse) {
+  Night night("observatory-slow",
+              "    malfunctions: [{kind: slow_download, at_s: 10, for_s: 10, download_s: 8}]\n");
+  night.clock.set(10.0);
+  night.observatory.start_exposure(0, 1.0);
+  night.clock.set(18.9);
+  EXPECT_EQ(night.state(), CameraState::reading);
+  EXPECT_FALSE(night.observatory.of(0, [](const auto& d) { return d.camera.image_ready(); }));
+  night.clock.set(19.1);
+  night.wait_for_frames(1);
+  EXPECT_TRUE(night.observatory.of(0, [](const auto& d) { return d.camera.image_ready(); }));
 }
 
 TEST(Observatory, RefusesExposuresBeyondTheScenarioAndWhileSlewing) {

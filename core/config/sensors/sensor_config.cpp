@@ -12,6 +12,7 @@
 #include "core/config/sensors/effects_config.h"
 #include "core/config/sensors/exclusion_config.h"
 #include "core/config/sensors/instrument_config.h"
+#include "core/config/sensors/malfunction_config.h"
 #include "core/config/sensors/optics_config.h"
 #include "core/config/sensors/pointing_config.h"
 #include "core/config/sensors/thermal_optics_config.h"
@@ -289,6 +290,9 @@ const Section& sensor_section() {
                     "Turbulence, for a camera with `psf: diffraction`."),
            optional("mask_deg", form::number(0.0, 89.0),
                     "Lowest elevation for `dmise visible` [deg], on the ground.", "0"),
+           optional("malfunctions", form::list(form::map(malfunction_section)),
+                    "What goes wrong with its devices in `dmise observatory`; nothing else is "
+                    "changed by it. On the ground."),
            optional("extinction_mag_per_airmass", form::number(0.0, 5.0),
                     "Extinction at 550 nm: a short form of `atmosphere: {extinction: ..}`.")},
           with_keys(surroundings_keys(), instrument_keys()))};
@@ -337,6 +341,10 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   if (const auto mask = map.find("mask_deg")) {
     if (!site) mask->fail("a mask is for a sensor on the ground", false);
     sensor.mask_deg = mask->number();
+  }
+  if (const auto malfunctions = map.find("malfunctions")) {
+    if (!site) malfunctions->fail("is for a sensor on the ground", false);
+    sensor.malfunctions = read_malfunctions(*malfunctions);
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   check_clock(map, sensor, duration);

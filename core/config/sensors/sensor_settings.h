@@ -14,6 +14,7 @@
 #include "core/effects/effects.h"
 #include "core/fusion/cue_settings.h"
 #include "core/instrument/instrument.h"
+#include "core/instrument/malfunction.h"
 #include "core/optics/camera.h"
 #include "core/optics/exclusion.h"
 #include "core/optics/waves/seeing.h"
@@ -160,6 +161,7 @@ struct SensorConfig {
     double half_angle_deg = 180.0;  // of a cone about its boresight that contains its field
   };
   std::optional<Observing> observing = {};  // none: a camera does
+  std::vector<Malfunction> malfunctions = {};  // of its devices in an observatory
   RecordedPlans recorded_plans = {};        // of a run that is replayed; empty: frames are planned
 
   bool is_camera() const { return !observing; }
