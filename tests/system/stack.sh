@@ -228,6 +228,27 @@ check_view() {
   say "ok: the gateway's container serves its page, to who has a token"
 }
 
+# What the observatory's container answers to a request of Alpaca, with this token.
+observatory() { docker-compose -p "$project" -f "$checkout/launch/stack/observatory.yaml" "$@"; }
+answer_of_observatory() {
+  observatory exec -T observatory bash -c "exec 3<>/dev/tcp/127.0.0.1/11111
+    printf 'GET /management/v1/configureddevices HTTP/1.0\\r\\nHost: o\\r\\nAuthorization: Bearer %s\\r\\n\\r\\n' '$1' >&3; cat <&3" 2>/dev/null
+}
+observatory_answers() { [[ $(answer_of_observatory "$view_token") == *'"DeviceType":"Telescope"'* ]]; }
+
+check_observatory() {
+  local -x DMISE_SCENARIO=observatory.yaml DMISE_TOKENS=$work/observatory.tokens
+  echo "view $view_token" | install -m 400 -o 10001 -g 10001 /dev/stdin "$DMISE_TOKENS"
+  observatory config -q >/dev/null 2>"$work/config.log" || die "compose config: $(cat "$work/config.log")"
+  observatory up -d >"$work/observatory.log" 2>&1 || die "the observatory: $(tail -n 5 "$work/observatory.log")"
+  wait_until 120 "the observatory's devices" observatory_answers
+  [[ $(answer_of_observatory wrong-wrong-wrong) == 'HTTP/1.1 401'* ]] || die "the observatory answers to who has no token"
+  observatory stop >/dev/null 2>&1
+  [[ $(docker inspect -f '{{.State.ExitCode}}' "$(observatory ps -aq observatory)") == 0 ]] || die "its night did not end well"
+  observatory down --volumes --timeout 1 >/dev/null 2>&1
+  say "ok: the observatory's container answers by Alpaca, to who has a token, and ends its night"
+}
+
 # A scenario that nobody can run: compose gives the launcher's code. It is alone, for where another container fails
 # first, compose ends it.
 check_failure() {
@@ -274,6 +295,7 @@ trap clean_up EXIT
 view_token=view-of-the-stack-test
 export DMISE_SCENARIOS=$work/scenarios DMISE_SCENARIO=scenario.yaml DMISE_KEYS=$work/keys
 mkdir "$work/tree" "$DMISE_SCENARIOS"
+cp "$checkout/launch/scenarios/observatory.yaml" "$DMISE_SCENARIOS/"
 cp -r "$tests"/stack/*.yaml "$tests"/own_{actor,detector,sensor,tracker} "$tests"/own_actor/{walk,mortal}.py "$DMISE_SCENARIOS/"
 cp "$checkout/clients/python/examples/detector.py" "$DMISE_SCENARIOS/own_detector/"
 cp "$checkout/clients/python/examples/ranging.py" "$DMISE_SCENARIOS/own_sensor/"
@@ -302,6 +324,7 @@ check_own_node
 check_own_deaths
 check_own_fault
 check_view
+check_observatory
 check_failure
 check_swarm
 [[ -z $given ]] || exit 0
