@@ -180,8 +180,9 @@ Optics read_optics(const YamlValue& value) {
 void write_optics_json(JsonWriter& json, const Optics& optics) {
   write_point_spread_json(json, optics.spread);
   if (const Vignetting& v = optics.vignetting; v.any()) {
-    json.key("vignetting").begin_object().field("natural", v.natural);
-    json.field("corner", v.corner).field("power", v.power).end_object();
+    json.key("vignetting").begin_object();
+    write_bound(json, vignetting_section(), v);
+    json.end_object();
   }
   write_field_tables_json(json, optics);
   write_thermal_optics_json(json, optics.thermal);
