@@ -89,6 +89,15 @@ const Section& fusion_section() {
            "pointing_sigma_arcsec", form::number(0.0, 3600.0),
            "Error of a frame's directions that its detections do not know [arcsec]: jitter, "
            "bias, drift.")),
+       later(bound<&FusionSettings::confirm_catalogued>(
+           "confirm_catalogued", form::integer(1, 1000),
+           "Detections that confirm a track of a catalogued object.")),
+       later(bound<&FusionSettings::confirm_unknown>(
+           "confirm_unknown", form::integer(1, 1000),
+           "Detections that confirm a track of an unknown object, which begins with four.")),
+       later(bound<&FusionSettings::confirm_arc>(
+           "confirm_arc", form::integer(0, 1000),
+           "Further detections that confirm a track that one site began.")),
        bound<&FusionConfig::cue_delay_ticks>(
            "cue_delay_ticks", form::integer(1, 100000),
            "Ticks between the decision for a task and its beginning."),
