@@ -21,7 +21,7 @@
 #include "core/config/yaml/search_path.h"
 #include "orbit-node/load_objects.h"
 #include "sensors/frame/make_sensor.h"
-#include "sensors/survey/rendered_check.h"
+#include "sensors/accuracy/rendered_check.h"
 #include "sensors/survey/survey_summary.h"
 
 namespace dmise {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/files/json.h"
 #include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/section.h"
 #include "core/orbit/elements/catalogue.h"
@@ -74,20 +75,29 @@ const Section& fusion_section() {
        bound<&FusionSettings::simultaneous_s>(
            "simultaneous_s", form::number(1e-3, 10.0),
            "Greatest time between detections of two sites that give a position [s]."),
-       bound<&FusionSettings::arc_window_s>(
+       later(bound<&FusionSettings::arc_window_s>(
            "arc_window_s", form::number(10.0, 3600.0),
-           "Greatest time between the exposures of one site that begin a track [s]."),
-       bound<&FusionSettings::arc_exposures>(
+           "Greatest time between the exposures of one site that begin a track [s].")),
+       later(bound<&FusionSettings::arc_exposures>(
            "arc_exposures", form::integer(0, 1000),
            "Least exposures of one site that begin a track. 0: one site begins none; else 4 "
-           "or more."),
+           "or more.")),
        bound<&FusionSettings::acceleration_noise_m2_per_s3>(
            "acceleration_noise_m2_per_s3", form::number(0.0, 1.0),
            "Process noise of the filter [m^2/s^3]."),
-       bound<&FusionSettings::pointing_sigma_arcsec>(
+       later(bound<&FusionSettings::pointing_sigma_arcsec>(
            "pointing_sigma_arcsec", form::number(0.0, 3600.0),
            "Error of a frame's directions that its detections do not know [arcsec]: jitter, "
-           "bias, drift."),
+           "bias, drift.")),
+       later(bound<&FusionSettings::confirm_catalogued>(
+           "confirm_catalogued", form::integer(1, 1000),
+           "Detections that confirm a track of a catalogued object.")),
+       later(bound<&FusionSettings::confirm_unknown>(
+           "confirm_unknown", form::integer(1, 1000),
+           "Detections that confirm a track of an unknown object, which begins with four.")),
+       later(bound<&FusionSettings::confirm_arc>(
+           "confirm_arc", form::integer(0, 1000),
+           "Further detections that confirm a track that one site began.")),
        bound<&FusionConfig::cue_delay_ticks>(
            "cue_delay_ticks", form::integer(1, 100000),
            "Ticks between the decision for a task and its beginning."),
@@ -132,6 +142,19 @@ FusionConfig read_fusion(const YamlValue& value) {
     }
   map.done();
   return config;
+}
+
+void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
+  const FusionSettings& s = fusion.settings;
+  json.key("fusion").begin_object();
+  json.list("catalogue_sigma_m", s.catalogue_sigma_m);
+  json.list("catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day);
+  write_bound(json, fusion_section(), s);
+  json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
+  if (!fusion.node.empty()) json.field("node", fusion.node);
+  if (!fusion.catalogue_path.empty()) json.field("catalogue", true);
+  if (fusion.age_days) json.field("age_days", *fusion.age_days);
+  json.list("not_in_catalogue", fusion.not_in_catalogue).end_object();
 }
 
 }  // namespace dmise

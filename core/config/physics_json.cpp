@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/base/files/json.h"
+#include "core/config/fusion_config.h"
 #include "core/config/scenario.h"
 #include "core/config/sensors/effect_list.h"
 #include "core/config/sensors/exclusion_config.h"
@@ -101,28 +102,6 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   }
   if (s.effects.drawn_by_opengl()) json.field("evaluator", "opengl");
   json.end_object();
-}
-
-void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
-  const FusionSettings& s = fusion.settings;
-  json.key("fusion").begin_object();
-  json.list("catalogue_sigma_m", s.catalogue_sigma_m);
-  json.list("catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day);
-  json.field("gate_d2", s.gate_d2).field("detection_probability", s.detection_probability);
-  json.field("false_alarms_per_frame", s.false_alarms_per_frame);
-  json.field("lost_after_s", s.lost_after_s).field("tentative_s", s.tentative_s);
-  json.field("start_window_s", s.start_window_s).field("simultaneous_s", s.simultaneous_s);
-  if (s.arc_window_s != FusionSettings{}.arc_window_s) json.field("arc_window_s", s.arc_window_s);
-  if (s.arc_exposures != FusionSettings{}.arc_exposures)
-    json.field("arc_exposures", std::int64_t(s.arc_exposures));
-  json.field("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
-  if (s.pointing_sigma_arcsec != FusionSettings{}.pointing_sigma_arcsec)
-    json.field("pointing_sigma_arcsec", s.pointing_sigma_arcsec);
-  json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
-  if (!fusion.node.empty()) json.field("node", fusion.node);
-  if (!fusion.catalogue_path.empty()) json.field("catalogue", true);
-  if (fusion.age_days) json.field("age_days", *fusion.age_days);
-  json.list("not_in_catalogue", fusion.not_in_catalogue).end_object();
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ const Section& simulation_section() {
                     "Length of the run [s], a whole number of ticks."),
            required("tick_s", form::number(1e-6, 3600.0),
                     "Time between ticks [s], at which the state of the world is published."),
-           optional("seed", form::seed(), "Seed of all random numbers.", "1"),
+           bound<&Scenario::seed>("seed", form::seed(), "Seed of all random numbers."),
            optional(
                "interpolation", form::choice({"3", "5", "7"}),
                "Order of the polynomials that join objects between ticks. By default the lowest "
@@ -62,8 +62,8 @@ const Section& stars_section() {
                 "The General Catalogue of Variable Stars (`gcvs5.txt`, or `gcvs_cat.dat` of CDS "
                 "B/gcvs). Its stars then have the brightness of the instant. Without it all are "
                 "constant."),
-       optional("faintest_mag", form::number(-2.0, 30.0),
-                "Faintest star of the catalogue that is drawn [V mag].", "9.5"),
+       bound<&Scenario::faintest_star_mag>("faintest_mag", form::number(-2.0, 30.0),
+                                           "Faintest star of the catalogue that is drawn [V mag]."),
        optional("synthetic_to", form::number(0.0, 21.0) | form::choice({"limit", "off"}),
                 "Where the catalogue ends, stars go on by counts to this magnitude [V mag]; "
                 "`limit`: to the faintest that stands out of a frame's noise.",
@@ -142,7 +142,7 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   scenario.duration = sim_seconds(map.number("duration_s"));
   scenario.tick = sim_seconds(map.number("tick_s"));
   check_whole_ticks(scenario, map.require("duration_s"));
-  scenario.seed = static_cast<std::uint64_t>(map.integer_or("seed", 1));
+  read_bound(map, scenario);
   if (const auto order = map.find("interpolation")) order->choice();
   if (const auto eop = map.find("earth_orientation")) {
     scenario.earth_orientation_path = eop->existing_file();
@@ -214,7 +214,7 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
     scenario.star_variables_path = variables->existing_file();
     scenario.star_variables_where = variables->place();
   }
-  scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5);
+  read_bound(map, scenario);
   scenario.synthetic_stars_to_v_mag = read_synthetic_to(map);
   map.done();
 }
@@ -306,7 +306,7 @@ Scenario read_scenario(const YamlValue& root, OwnNodeModels models) {
   if (const auto value = map.find("effects")) read_effects(*value, effects);
   Accuracy accuracy = standard_accuracy();
   if (const auto value = map.find("accuracy")) accuracy = read_accuracy(*value);
-  const bool detect = map.flag_or("detection", true);
+  const bool detect = map.flag("detection");
   const auto sensors = map.require("sensors");
   NodeNames names;
   for (const auto& value : sensors.list()) {

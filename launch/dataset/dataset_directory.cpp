@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <thread>
@@ -12,6 +11,7 @@
 #include "core/base/files/crc32c.h"
 #include "core/base/files/digest.h"
 #include "core/base/files/json.h"
+#include "core/base/files/json_record.h"
 #include "core/base/files/paths.h"
 #include "core/base/files/text_file.h"
 #include "core/base/files/whole_file.h"
@@ -68,9 +68,6 @@ bool is_part(const std::string& name) {
          is_numbered(name, "dataset-", 6, {".json", ".coco"});
 }
 
-/// Of plan.json: in how many tasks the data set is made.
-std::string tasks_field(std::uint64_t tasks) { return ",\"tasks\":" + std::to_string(tasks); }
-
 std::string sample_name(std::uint64_t seed, const char* ending) {
   return "sample-" + std::to_string(seed) + ending;
 }
@@ -87,16 +84,7 @@ std::int64_t size_of(const std::string& path) {
   return missing ? -1 : std::int64_t(size);
 }
 
-/// The size that a file has by the JSON of `DigestedFile`, looked for from
-/// `from` on, which is moved behind it; -1 if the JSON does not have it.
-std::int64_t size_by(const std::string& json, const std::string& name, std::size_t& from) {
-  constexpr std::string_view field = "\"bytes\":";
-  const std::size_t named = json.find("\"name\":\"" + name + "\"", from);
-  const std::size_t at = json.find(field, named);
-  if (named == std::string::npos || at == std::string::npos) return -1;
-  from = at;
-  return std::strtoll(json.c_str() + at + field.size(), nullptr, 10);
-}
+JsonRecord json_of(const std::string& path) { return {read_text_file(path, any_size), path}; }
 
 /// A file that is written atomically, with its digest and size.
 class DigestedFile {
@@ -147,7 +135,8 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
     make_directories(path_ + "/parts");
     if (!force && content() == Content::fewer_complete) reopen();
     // First the plan: it tells that the other files are ours.
-    write_file_whole(part("plan.json"), dataset_head(plan_) + tasks_field(task.count) + "}\n");
+    write_file_whole(part("plan.json"),
+                     dataset_head(plan_) + ",\"tasks\":" + std::to_string(task.count) + "}\n");
     write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
     remove_file(path_ + "/dataset.json");  // of fewer seeds
     lock_->take(directory_byte, FileLock::Use::shared);
@@ -172,8 +161,7 @@ bool DatasetDirectory::lock(bool force) {
 }
 
 void DatasetDirectory::require_tasks(const DatasetTask& task) const {
-  const std::string text = read_text_file(part("plan.json"));
-  if (text.find(tasks_field(task.count) + "}") != std::string::npos) return;
+  if (json_of(part("plan.json")).get<std::uint64_t>("tasks") == task.count) return;
   throw ConfigError(path_ +
                     ": other processes make this data set, with another n of --shard i/n, got " +
                     std::to_string(task.number) + "/" + std::to_string(task.count));
@@ -246,12 +234,15 @@ bool DatasetDirectory::is_complete() const {
 }
 
 void DatasetDirectory::require_files(const DatasetPlan& plan) const {
-  const std::string manifest = read_text_file(path_ + "/dataset.json", any_size);
-  std::vector<std::string> names{"coco.json"};
-  for (std::size_t shard = 0; shard < plan.shards(); ++shard) names.push_back(shard_name(shard));
-  std::size_t read = 0;  // of the manifest, which has the names in this order
-  for (const std::string& name : names) {
-    const std::int64_t size = size_of(path_ + "/" + name), wanted = size_by(manifest, name, read);
+  const JsonRecord manifest = json_of(path_ + "/dataset.json");
+  std::vector<JsonRecord> files = manifest.objects("shards");
+  if (files.size() != plan.shards())
+    throw ConfigError(path_ + ": dataset.json has " + std::to_string(files.size()) + " of " +
+                      std::to_string(plan.shards()) + " archives; --force makes all anew");
+  files.insert(files.begin(), manifest.object("coco"));
+  for (const JsonRecord& file : files) {
+    const std::string name = file.get<std::string>("name");
+    const std::int64_t size = size_of(path_ + "/" + name), wanted = file.get<std::int64_t>("bytes");
     if (size == wanted) continue;
     throw ConfigError(path_ + ": " + name + " " +
                       (size < 0 ? "is missing" : "has " + std::to_string(size) + " bytes") +
@@ -263,9 +254,7 @@ void DatasetDirectory::require_files(const DatasetPlan& plan) const {
 bool DatasetDirectory::has_shard(std::size_t shard) const {
   const std::string json = part(shard_name(shard, ".json"));
   const std::int64_t size = size_of(path_ + "/" + shard_name(shard));
-  std::size_t read = 0;
-  return size >= 0 && path_exists(json) &&
-         size == size_by(read_text_file(json), shard_name(shard), read);
+  return size >= 0 && path_exists(json) && size == json_of(json).get<std::int64_t>("bytes");
 }
 
 bool DatasetDirectory::has_sample(std::uint64_t seed) const {

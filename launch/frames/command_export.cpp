@@ -17,6 +17,7 @@
 #include "core/config/yaml/search_path.h"
 #include "core/exchange/export_format.h"
 #include "core/orbit/elements/catalogue.h"
+#include "core/run/run_files.h"
 #include "launch/command/commands.h"
 #include "launch/run/progress.h"
 
@@ -163,7 +164,7 @@ void run_export(const ExportOptions& options) {
   fs::path out;
   if (format.all_kinds && !options.truth && !options.detections && !options.tracks) {
     for (const ProductKind kind : format.kinds)
-      if (kind != ProductKind::truth || path_exists(options.run + "/truth.jsonl"))
+      if (kind != ProductKind::truth || path_exists(path_in(options.run, run_file::truth)))
         out = export_kind(options, format, kind);
   } else {
     out = export_kind(options, format, kind_of(options, format));

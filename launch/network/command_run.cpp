@@ -17,6 +17,7 @@
 #include "core/base/files/paths.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
+#include "core/run/run_files.h"
 #include "core/sim/controller.h"
 #include "core/sim/participant.h"
 #include "launch/command/commands.h"
@@ -68,8 +69,8 @@ class EmbeddedRun {
     for (const auto& sensor : scenario.sensors) {
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
       const std::string lines = directory.path() + "/" + sensor.name;
-      found_.frames += int(count_lines(lines + "/frames.jsonl"));
-      found_.detections += count_lines(lines + "/detections.jsonl");
+      found_.frames += int(count_lines(path_in(lines, run_file::frames)));
+      found_.detections += count_lines(path_in(lines, run_file::detections));
     }
     found_.frames_total = frames_total_;
   }

@@ -19,6 +19,7 @@
 #include "core/base/printable.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
+#include "core/run/run_files.h"
 #include "core/time/iso8601.h"
 #include "launch/command/notes.h"
 #include "launch/process/host_names.h"
@@ -326,8 +327,8 @@ class Launch {
         .frames_total = frames_total_};
     for (const auto& sensor : scenario_.sensors) {
       const std::string lines = directory_.path() + "/" + sensor.name;
-      state.frames += int(count_lines(lines + "/frames.jsonl"));
-      state.detections += count_lines(lines + "/detections.jsonl");
+      state.frames += int(count_lines(path_in(lines, run_file::frames)));
+      state.detections += count_lines(path_in(lines, run_file::detections));
     }
     state.waiting_for = joined(status.missing.empty() ? status.holding : status.missing);
     return state;

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
+#include "core/run/run_files.h"
 #include "launch/run/make_fusion.h"
 #include "nodes/environment/environment_actor.h"
 #include "nodes/own/input_journal.h"
@@ -130,7 +131,7 @@ const NodeMaker& maker_of(const NodeKind& kind) {
 }
 
 std::uint32_t frames_finished(const std::string& sensor, const std::string& directory) {
-  return std::uint32_t(count_lines(directory + "/" + sensor + "/frames.jsonl"));
+  return std::uint32_t(count_lines(path_in(directory + "/" + sensor, run_file::frames)));
 }
 
 }  // namespace dmise

@@ -24,12 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What follows the first `"key":` of a JSON line written by JsonWriter; "0" if there is none.
-const char* value_in(const std::string& line, const std::string& key) {
-  const auto at = line.find("\"" + key + "\":");
-  return at == std::string::npos ? "0" : line.c_str() + at + key.size() + 3;
-}
-
 /// Status in run.json while products of an earlier run are removed.
 constexpr const char* clearing = "clearing";
 
@@ -167,14 +161,16 @@ void RunDirectory::merge_lines() const {
   for (const RunFile& table : run_file::merged) {
     const std::string name = table.name;
     if (name == run_file::truth.name && !scenario_.output.truth) continue;
-    // (time, sensor, index in the sensor's file): independent of the order of arrival.
+    // (time, sensor, order in the sensor's file): independent of the order of arrival.
     std::vector<std::tuple<std::int64_t, std::string, std::size_t, std::string>> rows;
     for (const auto& sensor : scenario_.sensors) {
-      auto lines = whole_lines(file(sensor.name) + "/" + name);
+      const std::string path = path_in(file(sensor.name), table);
+      if (!path_exists(path)) continue;
       const char* time = name == run_file::detections.name ? "time_ns" : "middle_ns";
-      for (std::size_t i = 0; i < lines.size(); ++i)
-        rows.emplace_back(std::strtoll(value_in(lines[i], time), nullptr, 10), sensor.name, i,
-                          std::move(lines[i]));
+      for_line_texts(path, quietly, [&](const std::string& line, const std::string& place) {
+        rows.emplace_back(JsonRecord(line, place).get<std::int64_t>(time), sensor.name, rows.size(),
+                          line);
+      });
     }
     std::sort(rows.begin(), rows.end());
     std::string text;
@@ -195,16 +191,19 @@ std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string
     const std::string directory = run_path + "/" + sensor.name;
     s.frames = int(count_lines(path_in(directory, run_file::frames)));
     s.detections = int(count_lines(path_in(directory, run_file::detections)));
-    for (const auto& line : whole_lines(path_in(directory, run_file::truth)))
-      s.objects += line.find("\"in_frame\":true") != std::string::npos;
+    const auto for_lines_of = [&](const RunFile& table, auto&& take) {
+      if (const auto path = path_in(directory, table); path_exists(path))
+        for_lines(path, quietly, take);
+    };
+    for_lines_of(run_file::truth,
+                 [&](const JsonRecord& line) { s.objects += line.get_or("in_frame", false); });
     double frames = 0.0, seconds = 0.0;
-    if (const auto costs = path_in(directory, run_file::costs); path_exists(costs))
-      for_lines(costs, quietly, [&](const JsonRecord& line) {
-        const double of_line = std::max(1.0, line.get_or("frames", 1.0));
-        frames += of_line;
-        seconds += of_line * line.get_or("total_s", 0.0);
-        s.memory_mb = std::max(s.memory_mb, line.get_or("pss_mb", 0.0));
-      });
+    for_lines_of(run_file::costs, [&](const JsonRecord& line) {
+      const double of_line = std::max(1.0, line.get_or("frames", 1.0));
+      frames += of_line;
+      seconds += of_line * line.get_or("total_s", 0.0);
+      s.memory_mb = std::max(s.memory_mb, line.get_or("pss_mb", 0.0));
+    });
     if (frames > 0.0) s.seconds_per_frame = seconds / frames;
     summaries.push_back(s);
   }

@@ -70,7 +70,7 @@ void write_index_page(const RunDirectory& directory, bool pixels) {
   try {
     write_report(directory.path(), pixels);
   } catch (const Error& error) {
-    print_note(directory.path() + "/index.html was not written: " + error.what());
+    print_note(path_in(directory.path(), run_file::page) + " was not written: " + error.what());
   }
 }
 
@@ -86,7 +86,7 @@ std::string what_to_open(const RunDirectory& directory, const Scenario& scenario
     if (text.empty() && path_exists(marked)) text = "open " + marked + "\n";
   }
   if (has_index_page(directory))
-    text += (text.empty() ? "open " : "or   ") + directory.path() + "/index.html\n";
+    text += (text.empty() ? "open " : "or   ") + path_in(directory.path(), run_file::page) + "\n";
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/files/whole_file.h"
 #include "core/report/run_report.h"
+#include "core/run/run_files.h"
 #include "launch/run/star_catalogue_option.h"
 
 namespace dmise {
@@ -29,7 +30,7 @@ std::string write_report(const std::string& directory, bool pixels, int threads)
   Threads pool(threads > 0 ? threads : std::clamp(processors, 1, 8));
   ReportSettings settings;
   if (!pixels) settings.most_views = 0;
-  const std::string path = directory + "/index.html";
+  const std::string path = path_in(directory, run_file::page);
   write_file_whole(path,
                    run_report(run, stars_of(run.record.star_catalogue).get(), pool, settings));
   return path;

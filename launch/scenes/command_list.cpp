@@ -12,6 +12,7 @@
 #include "core/config/objects/object_model_config.h"
 #include "core/config/sensors/camera_config.h"
 #include "core/config/sensors/effect_list.h"
+#include "core/config/sensors/sensor_config.h"
 #include "core/config/star_catalogues.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
@@ -50,12 +51,12 @@ void list_cameras() {
 
 void list_sites() {
   for (const auto& name : names_of("sites")) {
-    YamlMap site(preset("sites", name));
+    YamlMap site(preset("sites", name), site_section());
     const double latitude_deg = site.number("latitude_deg"),
                  longitude_deg = site.number("longitude_deg");
     print(name, formatted("%.3f deg %c, %.3f deg %c, %.0f m", std::abs(latitude_deg),
                           latitude_deg < 0 ? 'S' : 'N', std::abs(longitude_deg),
-                          longitude_deg < 0 ? 'W' : 'E', site.number_or("height_m", 0.0)));
+                          longitude_deg < 0 ? 'W' : 'E', site.number("height_m")));
   }
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "sensors/survey/rendered_check.h"
+#include "sensors/accuracy/rendered_check.h"
 #include "sensors/survey/survey_summary.h"
 
 namespace dmise {

@@ -10,6 +10,7 @@
 #include "core/config/objects/object_names.h"
 #include "core/products/frame_report.h"
 #include "core/products/product_json.h"
+#include "core/run/run_files.h"
 #include "core/time/iso8601.h"
 #include "nodes/fusion/filter_tracker.h"
 #include "nodes/fusion/own_tracker.h"
@@ -168,8 +169,8 @@ void FusionEvaluator::note_obstacles(Tick tick, const std::vector<CueWish>& wish
 
 void FusionEvaluator::open_files(Tick tick) {
   const SimTime from = scenario_.time_of(tick);
-  tracks_.emplace(directory_ + "/tracks.jsonl", "time_ns", from);
-  if (scheduler_) tasks_.emplace(directory_ + "/tasks.jsonl", "given_ns", from);
+  tracks_.emplace(path_in(directory_, run_file::tracks), "time_ns", from);
+  if (scheduler_) tasks_.emplace(path_in(directory_, run_file::tasks), "given_ns", from);
   begun_ = true;
 }
 

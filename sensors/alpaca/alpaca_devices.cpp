@@ -127,7 +127,8 @@ MemberAnswer AlpacaDevices::call(const DeviceCall& call, const AlpacaParameters&
     throw BadRequest(printable(call.member, 60) +
                      (member ? call.put ? ": can't be put" : ": can't be read"
                              : ": a " + call.type + " has no such member"));
-  const MemberCall member_call{*kind, observatory_, call.number, sessions[call.number], parameters};
+  const MemberCall member_call{{*kind, observatory_, call.number, sessions[call.number]},
+                               parameters};
   if (member->needs_connection && !member_call.session.connected)
     throw DeviceError(DeviceFault::not_connected, "the device is not connected");
   if (member->needs_connection && !observatory_.has_link(call.number))

@@ -20,22 +20,8 @@ struct DeviceSession {
 struct DeviceKind;
 
 /// A call of one member of a device.
-struct MemberCall {
-  const DeviceKind& kind;
-  Observatory& observatory;
-  std::size_t station;
-  DeviceSession& session;
+struct MemberCall : StationCall<DeviceKind, DeviceSession> {
   const AlpacaParameters& given;
-
-  /// What `ask` returns of the station's devices.
-  template <class Ask>
-  auto of(const Ask& ask) const {
-    return observatory.of(station, ask);
-  }
-  void on(const std::function<void(const Observatory::Devices&)>& work) const {
-    observatory.use(station, work);
-  }
-  const SensorConfig& sensor() const { return observatory.sensor(station); }
 };
 
 /// What a device answers to a call.

@@ -75,7 +75,7 @@ struct FramePipeline::Work {
     const auto& to_v_mag = settings.sensor.synthetic_stars_to_v_mag;
     const bool to_frame_limit = stars && to_v_mag && std::isinf(*to_v_mag);
     if (!has_plan && !to_frame_limit) return;
-    planner.emplace(settings.sensor, stars ? stars->map().get() : nullptr,
+    planner.emplace(settings.sensor, stars ? stars->field().map().get() : nullptr,
                     settings.faintest_star_mag, settings.shapes.get());
   }
 
@@ -130,7 +130,7 @@ struct FramePipeline::Work {
   /// Until they are needed again the memory is for counts.
   void release_stars() {
     if (stars)
-      if (const auto& file = stars->map()->file) file->release();
+      if (const auto& file = stars->field().map()->file) file->release();
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
@@ -155,7 +155,7 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
   OpticsStage part_optics(sensor, settings.seed, threads);
   if (evaluator) part_optics.draw_by(*evaluator);
   std::optional<StarLayer> part_stars;
-  if (stars) part_stars.emplace(sensor, stars->map(), settings.faintest_star_mag);
+  if (stars) part_stars.emplace(sensor, stars->field().map(), settings.faintest_star_mag);
   ExpectedElectronImage image(light.columns, light.rows);
   EffectTimes elsewhere;
   expected_electrons(view, sources(part_stars ? &*part_stars : nullptr, part.shapes.get()),

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/files/json_record.h"
 #include "core/base/files/paths.h"
 #include "core/base/files/whole_file.h"
 #include "core/base/formatted.h"
@@ -164,13 +164,10 @@ long ProductWriter::keep_frames(std::uint32_t last) const {
     const std::string path = path_in(directory_, table);
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) continue;
-    std::ifstream file(path);
-    std::string line, kept;
-    while (std::getline(file, line)) {
-      const auto at = line.find("\"frame\":");  // as JsonWriter writes it
-      if (file.eof() || at == std::string::npos) continue;
-      if (std::strtoul(line.c_str() + at + 8, nullptr, 10) <= last) kept += line + "\n";
-    }
+    std::string kept;
+    for_line_texts(path, quietly, [&](const std::string& line, const std::string& place) {
+      if (JsonRecord(line, place).get<std::uint32_t>("frame") <= last) kept += line + "\n";
+    });
     write_file_whole(path, kept);
     if (table.name == run_file::detections.name)
       detections = long(std::count(kept.begin(), kept.end(), '\n'));

@@ -29,21 +29,7 @@ struct IndiSession {
 struct IndiDeviceKind;
 
 /// A call of one property of a device.
-struct IndiCall {
-  const IndiDeviceKind& kind;
-  Observatory& observatory;
-  std::size_t station;
-  IndiSession& session;
-
-  template <class Ask>
-  auto of(const Ask& ask) const {
-    return observatory.of(station, ask);
-  }
-  void on(const std::function<void(const Observatory::Devices&)>& work) const {
-    observatory.use(station, work);
-  }
-  const SensorConfig& sensor() const { return observatory.sensor(station); }
-};
+using IndiCall = StationCall<IndiDeviceKind, IndiSession>;
 
 /// What a property has.
 struct IndiReading {

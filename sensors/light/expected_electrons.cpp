@@ -12,10 +12,10 @@
 #include "core/sky/bodies/sun_disc.h"
 #include "core/sky/limb_air.h"
 #include "sensors/light/disc_layer.h"
+#include "sensors/light/object_layer.h"
 #include "sensors/light/planet_layer.h"
 #include "sensors/light/sky_layer.h"
 #include "sensors/light/stray_light.h"
-#include "sensors/objects/object_layer.h"
 #include "sensors/objects/objects_in_field.h"
 #include "sensors/scene/limb_layer.h"
 #include "sensors/scene/occlusion_mask.h"
@@ -186,7 +186,7 @@ double LightSources::limit_v_mag(const EffectSet& effects) const {
 
 DrawnStars LightSources::drawn(const EffectSet& effects) const {
   if (!stars || !effects.has(StarBackground::facts)) return {};
-  return stars->drawn(limit_v_mag(effects), effects);
+  return stars->field().drawn(limit_v_mag(effects), effects);
 }
 
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,

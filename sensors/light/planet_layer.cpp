@@ -7,7 +7,7 @@
 #include "core/optics/blur/snapshots.h"
 #include "core/optics/projection.h"
 #include "core/photometry/star_light.h"
-#include "sensors/objects/row_window.h"
+#include "sensors/light/row_window.h"
 #include "sensors/scene/seen_planet.h"
 #include "sensors/scene/spectra.h"
 #include "sensors/scene/throughput.h"

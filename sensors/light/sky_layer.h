@@ -3,20 +3,11 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/sky/sky_grid.h"
-#include "core/sky/sky_model.h"
 #include "sensors/scene/gl_evaluator.h"
 #include "sensors/scene/view.h"
+#include "sensors/sky/sky_light.h"
 
 namespace dmise {
-
-/// The sky over a sensor in its band in the middle of its exposure: the parts that are on, Sun and
-/// Moon where the environment says. Stars that are `drawn` one by one are left out.
-SkyModel sky_over(const View& view, const DrawnStars& drawn);
-
-/// Expected electrons of a sky in a pixel: at its centre, times its own solid angle; 0 where the
-/// Earth hides it. `view` and `sky` must outlive it.
-PixelFunction electrons_of(const View& view, const SkyModel& sky);
 
 /// Fills `image` with the expected electrons of `sky_over`. From a grid, within the tolerance of
 /// `SkyGrid` at the sensor's level. All zero with the effect off. With an `evaluator` that one

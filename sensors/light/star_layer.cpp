@@ -13,11 +13,11 @@
 #include "core/optics/blur/snapshots.h"
 #include "core/optics/projection.h"
 #include "core/sky/stars/star_counts.h"
-#include "sensors/light/star_exposure.h"
+#include "sensors/light/row_window.h"
 #include "sensors/light/star_order.h"
 #include "sensors/light/star_snapshots.h"
-#include "sensors/objects/row_window.h"
 #include "sensors/scene/throughput.h"
+#include "sensors/sky/star_exposure.h"
 
 namespace dmise {
 namespace {
@@ -87,106 +87,23 @@ std::vector<Deposited> add_snapshots(const View& view, std::span<const Arc> arcs
   return deposited;
 }
 
-/// How far the boresight turns from where it is in mid exposure.
-double turned_rad(const View& view) {
-  const Vec<Gcrs> middle = view.boresight(view.times().middle);
-  const FrameTimes times = view.times_of_all_rows();
-  return std::max(angle_rad(middle, view.boresight(times.start)),
-                  angle_rad(middle, view.boresight(times.end)));
-}
-
 }  // namespace
-
-/// Stars around the boresight of mid exposure, wide enough for the field to have turned.
-std::vector<std::uint32_t> StarLayer::candidates(const View& view, double faintest_v_mag) const {
-  std::vector<std::uint32_t> found;
-  query_brightest(
-      *map_, view.boresight(view.times().middle),
-      half_diagonal_rad(view.sensor().camera.optics) + turned_rad(view) + widest_shift_rad,
-      faintest_v_mag, found);
-  return found;
-}
 
 StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map,
                      double faintest_v_mag)
-    : map_(std::move(map)),
-      light_(sensor.camera.band),
-      faintest_filled_v_mag_(map_->summary.faintest_filled_v_mag) {
-  if (!scene_facts(sensor).synthetic_stars) return;
-  auto synthetic = std::make_unique<const SyntheticStars>(
-      map_, faintest_v_mag, std::min(*sensor.synthetic_stars_to_v_mag, StarCounts::last_v_mag));
-  to_frame_limit_ = std::isinf(*sensor.synthetic_stars_to_v_mag);
-  if (synthetic->from_v_mag() < synthetic->to_v_mag()) synthetic_ = std::move(synthetic);
-}
-
-DrawnStars StarLayer::drawn(double limit_v_mag, const EffectSet& effects) const {
-  const double complete = std::min(limit_v_mag, faintest_filled_v_mag_);
-  if (!synthetic_) return {complete};
-  // Stars that are left out at the bright end are in the smooth starlight with all fainter ones.
-  if (limit_v_mag < synthetic_->from_v_mag()) return {limit_v_mag, true};
-  return {std::max(synthetic_->from_v_mag(), synthetic_limit_v_mag(effects)), true};
-}
-
-double StarLayer::synthetic_limit_v_mag(const EffectSet& effects) const {
-  const int level = effects.level(SyntheticBackground::facts);
-  if (to_frame_limit_ && level == SyntheticBackground::facts.reference()) return -unbounded;
-  return std::min(synthetic_->to_v_mag(), SyntheticBackground::limit_v_mag(level));
-}
-
-double StarLayer::expected_synthetic(const View& view, const EffectSet& effects) const {
-  if (!synthetic_) return 0.0;
-  const double limit = synthetic_limit_v_mag(effects);
-  const Optics& optics = view.sensor().camera.optics;
-  const SimTime middle = view.times().middle;
-  const auto gcrs_from_camera = view.camera_from_gcrs(middle).inverse();
-  const auto earth = view.earth_occultation(middle);
-  const Vec<Gcrs> up = view.up(middle);
-  // Pieces of the frame with the area that their edges span.
-  constexpr int pieces = 24;
-  const double width_px = double(optics.columns) / pieces, height_px = double(optics.rows) / pieces;
-  double sum = 0.0;
-  for (int i = 0; i < pieces; ++i)
-    for (int j = 0; j < pieces; ++j) {
-      const PixelPosition at{(i + 0.5) * width_px - 0.5, (j + 0.5) * height_px - 0.5};
-      const auto here = unproject(optics, at);
-      const auto right = unproject(optics, {at.x_px + 0.5, at.y_px});
-      const auto below = unproject(optics, {at.x_px, at.y_px + 0.5});
-      if (!here || !right || !below) continue;
-      const Vec<Gcrs> direction = gcrs_from_camera * *here;
-      if (view.on_ground() ? dot(up, direction) < 0.0 : earth && earth->hides_direction(direction))
-        continue;
-      const double area_sr =
-          4.0 * norm(cross(*right - *here, *below - *here)) * width_px * height_px;
-      sum += synthetic_->per_square_degree(direction, limit) * area_sr / (deg * deg);
-    }
-  return sum;
-}
-
-std::uint32_t StarLayer::count(const View& view, double faintest_v_mag, double margin_px) const {
-  const StarExposure exposure{.view = view, .map = *map_};
-  const auto& grid = view.sensor().camera.optics;
-  std::uint32_t inside = 0;
-  for (const StarTrail& trail : exposure.trails(candidates(view, faintest_v_mag))) {
-    if (exposure.hides(trail.middle)) continue;
-    const auto [start, middle, end] = trail.pixel;
-    const auto [first_x, last_x] = std::minmax({start.x_px, middle.x_px, end.x_px});
-    const auto [first_y, last_y] = std::minmax({start.y_px, middle.y_px, end.y_px});
-    inside += last_x > -0.5 - margin_px && first_x < grid.columns - 0.5 + margin_px &&
-              last_y > -0.5 - margin_px && first_y < grid.rows - 0.5 + margin_px;
-  }
-  return inside;
-}
+    : field_(sensor, std::move(map), faintest_v_mag), light_(sensor.camera.band) {}
 
 std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const OcclusionMask& mask,
                               ExpectedElectronImage& image, double faintest_v_mag,
                               std::vector<StarTruth>* truth, EffectTimes& times) const {
-  StarExposure exposure{.view = view, .map = *map_};
-  std::vector<std::uint32_t> found = candidates(view, faintest_v_mag);
+  const StarMap& map = *field_.map();
+  StarExposure exposure{.view = view, .map = map};
+  std::vector<std::uint32_t> found = field_.candidates(view, faintest_v_mag);
   const int snapshots = view.sensor().effects.snapshots();
-  const bool by_grid = !map_->is_small() && found.size() >= least_for_grid && snapshots == 0;
+  const bool by_grid = !map.is_small() && found.size() >= least_for_grid && snapshots == 0;
   if (by_grid) {
     exposure.make_grid();
-    order_for_drawing(found, map_->index.direction, exposure.camera[1], view.sensor().camera.optics,
+    order_for_drawing(found, map.index.direction, exposure.camera[1], view.sensor().camera.optics,
                       widest_shift_rad + turned_rad(view));
   }
   // OpenGL may draw snapshots, and its pictures are read back whole: all stars go at once.
@@ -195,29 +112,31 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Occlu
   std::uint32_t inside = 0;
   for (std::size_t begin = 0; begin < found.size(); begin += at_a_time) {
     const auto which = std::span(found).subspan(begin, std::min(at_a_time, found.size() - begin));
-    inside += draw(
-        exposure,
-        by_grid ? exposure.trails_by_grid(which, map_->index.direction) : exposure.trails(which),
-        by_grid ? missed_share * optics.limit_e() : 0.0, optics, mask, image, truth, times);
+    inside +=
+        draw(exposure,
+             by_grid ? exposure.trails_by_grid(which, map.index.direction) : exposure.trails(which),
+             by_grid ? missed_share * optics.limit_e() : 0.0, optics, mask, image, truth, times);
   }
-  if (!synthetic_ || faintest_v_mag < synthetic_->from_v_mag()) return inside;
+  const SyntheticStars* synthetic = field_.synthetic();
+  if (!synthetic || faintest_v_mag < synthetic->from_v_mag()) return inside;
   double drawing_s = 0.0;
   const double before_s = times.sum_s();
   {
     Stopwatch timing(drawing_s);
-    inside += draw_synthetic(exposure, optics, mask, image, truth, times);
+    inside += draw_synthetic(*synthetic, exposure, optics, mask, image, truth, times);
   }
   times[SyntheticBackground::facts] += std::max(0.0, drawing_s - (times.sum_s() - before_s));
   return inside;
 }
 
-std::uint32_t StarLayer::draw_synthetic(StarExposure& exposure, OpticsStage& optics,
-                                        const OcclusionMask& mask, ExpectedElectronImage& image,
-                                        std::vector<StarTruth>* truth, EffectTimes& times) const {
+std::uint32_t StarLayer::draw_synthetic(const SyntheticStars& synthetic, StarExposure& exposure,
+                                        OpticsStage& optics, const OcclusionMask& mask,
+                                        ExpectedElectronImage& image, std::vector<StarTruth>* truth,
+                                        EffectTimes& times) const {
   const EffectSet& effects = exposure.view.sensor().effects;
-  const double limit = synthetic_limit_v_mag(effects);
+  const double limit = field_.synthetic_limit_v_mag(effects);
   const auto [axis, radius_rad] = exposure.seen_cone();
-  if (synthetic_->expected_around(axis, radius_rad, limit) >= double(least_for_grid))
+  if (synthetic.expected_around(axis, radius_rad, limit) >= double(least_for_grid))
     exposure.make_grid();
   std::uint32_t inside = 0;
   const auto draw_some = [&](const SyntheticStars::Stars& stars) {
@@ -240,9 +159,9 @@ std::uint32_t StarLayer::draw_synthetic(StarExposure& exposure, OpticsStage& opt
                    image, truth, times);
   };
   if (effects.snapshots())  // all at once, as in `draw`
-    draw_some(synthetic_->around(axis, radius_rad, limit));
+    draw_some(synthetic.around(axis, radius_rad, limit));
   else
-    synthetic_->visit(axis, radius_rad, limit, draw_some);
+    synthetic.visit(axis, radius_rad, limit, draw_some);
   return inside;
 }
 

@@ -7,10 +7,9 @@
 #include "core/base/parallel.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/stars/star_cache.h"
-#include "core/sky/stars/synthetic_stars.h"
 #include "sensors/scene/occlusion_mask.h"
 #include "sensors/scene/optics_stage.h"
-#include "sensors/scene/view.h"
+#include "sensors/sky/field_stars.h"
 
 namespace dmise {
 
@@ -34,21 +33,10 @@ struct StarTruth {
 /// synthetic ones that go on where the catalogue ends.
 class StarLayer {
  public:
-  /// `faintest_v_mag`: of the catalogue's stars that are drawn.
+  /// As of `FieldStars`.
   StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map, double faintest_v_mag);
 
-  const std::shared_ptr<const StarMap>& map() const { return map_; }
-
-  /// Which stars are drawn one by one, by the limit of the catalogue's and an exposure's effects.
-  DrawnStars drawn(double limit_v_mag, const EffectSet& effects) const;
-
-  /// How many stars of the catalogue have a path over the frame or within `margin_px` of it; none
-  /// is drawn.
-  std::uint32_t count(const View& view, double faintest_v_mag, double margin_px) const;
-
-  /// How many synthetic stars the frame is expected to hold at the level of `effects`, by the
-  /// counts at 24 x 24 places of it, whatever the catalogue has of them.
-  double expected_synthetic(const View& view, const EffectSet& effects) const;
+  const FieldStars& field() const { return field_; }
 
   /// Adds the stars' light that gets past `mask` to `image`; returns how many left some in the
   /// frame. `truth`, if not null, gets each of them. What air, Earth and blur cost is
@@ -63,19 +51,13 @@ class StarLayer {
                      std::vector<StarTruth>* truth, EffectTimes& times) const;
   std::vector<double> signals_e(const StarExposure& exposure, const std::vector<StarTrail>& trails,
                                 EffectTimes& times) const;
-  std::uint32_t draw_synthetic(StarExposure& exposure, OpticsStage& optics,
-                               const OcclusionMask& mask, ExpectedElectronImage& image,
-                               std::vector<StarTruth>* truth, EffectTimes& times) const;
-  std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;
-  double synthetic_limit_v_mag(const EffectSet& effects) const;
+  std::uint32_t draw_synthetic(const SyntheticStars& synthetic, StarExposure& exposure,
+                               OpticsStage& optics, const OcclusionMask& mask,
+                               ExpectedElectronImage& image, std::vector<StarTruth>* truth,
+                               EffectTimes& times) const;
 
-  std::shared_ptr<const StarMap> map_;
-  std::unique_ptr<const SyntheticStars> synthetic_;  // null: there are none
-  /// Synthetic stars go to the frame's limit, by its level of `synthetic_stars`: at its reference
-  /// nobody has set one, and none is drawn.
-  bool to_frame_limit_ = false;
+  FieldStars field_;
   StarLight light_;
-  double faintest_filled_v_mag_;  // V to which the catalogue goes
 };
 
 }  // namespace dmise

@@ -4,11 +4,11 @@
 
 #include "core/base/image.h"
 #include "core/sky/places/apparent.h"
-#include "sensors/light/star_exposure.h"
 #include "sensors/scene/occlusion_mask.h"
 #include "sensors/scene/optics_stage.h"
 #include "sensors/scene/spectra.h"
 #include "sensors/scene/view.h"
+#include "sensors/sky/star_exposure.h"
 
 namespace dmise {
 

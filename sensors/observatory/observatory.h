@@ -147,4 +147,24 @@ void replay_night(const Scenario& scenario, const ScenarioInputs& scene,
                   const std::string& directory, int threads,
                   const std::function<bool(const CommandedExposure&)>& after);
 
+/// A client's call of a station's devices, through a server with such kinds of device and such a
+/// session with each.
+template <class Kind, class Session>
+struct StationCall {
+  const Kind& kind;
+  Observatory& observatory;
+  std::size_t station;
+  Session& session;
+
+  /// Returns what `ask` returns of the station's devices.
+  template <class Ask>
+  auto of(const Ask& ask) const {
+    return observatory.of(station, ask);
+  }
+  void on(const std::function<void(const Observatory::Devices&)>& work) const {
+    observatory.use(station, work);
+  }
+  const SensorConfig& sensor() const { return observatory.sensor(station); }
+};
+
 }  // namespace dmise

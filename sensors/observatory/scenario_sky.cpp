@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "sensors/light/sky_layer.h"
+#include "sensors/sky/sky_light.h"
 
 namespace dmise {
 namespace {

@@ -12,9 +12,9 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/optics/psf_plan.h"
-#include "sensors/light/sky_layer.h"
-#include "sensors/light/thermal_optics.h"
 #include "sensors/scene/throughput.h"
+#include "sensors/sky/sky_light.h"
+#include "sensors/sky/thermal_optics.h"
 
 namespace dmise {
 namespace {

@@ -11,11 +11,11 @@
 #include "core/sky/air/air_exposure.h"
 #include "core/sky/bodies/earth_limb.h"
 #include "core/visibility/field_of_view.h"
-#include "sensors/light/star_layer.h"
 #include "sensors/objects/object_sampler.h"
 #include "sensors/objects/objects_in_field.h"
 #include "sensors/planning/exposure_planner.h"
 #include "sensors/scene/seen_planet.h"
+#include "sensors/sky/field_stars.h"
 #include "sensors/scene/throughput.h"
 
 namespace dmise {
@@ -79,12 +79,12 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   const double reach_px = 5 * scene.psf_sigma_px + 1;  // radius of a source's light
   DrawnStars drawn;
   if (scene.stars && sensor.effects.has(StarBackground::facts)) {
-    const StarLayer layer(sensor, scene.stars, scene.faintest_star_mag);
+    const FieldStars field(sensor, scene.stars, scene.faintest_star_mag);
     const EffectSet asked = scene.planner ? scene.planner->asked_effects(view) : sensor.effects;
-    drawn = layer.drawn(scene.faintest_star_mag, asked);
-    out.stars = out.shutter_closed ? 0 : layer.count(view, scene.faintest_star_mag, reach_px);
+    drawn = field.drawn(scene.faintest_star_mag, asked);
+    out.stars = out.shutter_closed ? 0 : field.count(view, scene.faintest_star_mag, reach_px);
     if (drawn.by_counts && !out.shutter_closed)
-      out.synthetic = {layer.expected_synthetic(view, asked), drawn.to_v_mag};
+      out.synthetic = {field.expected_synthetic(view, asked), drawn.to_v_mag};
   }
   if (scene.count_objects && sensor.effects.has(SpaceObjects::facts))
     out.objects = out.shutter_closed ? 0 : objects_with_light(view, scene.shapes, reach_px);

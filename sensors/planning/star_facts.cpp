@@ -62,17 +62,11 @@ StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double fa
   const StarTable& table = stars->stars;
   if (sensor.effects.has(StarBackground::facts))
     drawn_.to_v_mag = std::min(faintest_v_mag, stars->summary.faintest_filled_v_mag);
-  if (drawn_.to_v_mag > -unbounded && scene_facts(sensor).synthetic_stars &&
-      sensor.effects.has(SyntheticBackground::facts)) {
+  if (drawn_.to_v_mag > -unbounded && sensor.effects.has(SyntheticBackground::facts)) {
     // The catalogue outlives this.
-    auto synthetic = std::make_unique<const SyntheticStars>(
-        std::shared_ptr<const StarMap>(std::shared_ptr<void>(), stars), faintest_v_mag,
-        std::min(*sensor.synthetic_stars_to_v_mag, StarCounts::last_v_mag));
-    to_frame_limit_ = std::isinf(*sensor.synthetic_stars_to_v_mag);
-    if (synthetic->from_v_mag() < synthetic->to_v_mag()) {
-      drawn_ = {synthetic->to_v_mag(), true};
-      synthetic_ = std::move(synthetic);
-    }
+    field_.emplace(sensor, std::shared_ptr<const StarMap>(std::shared_ptr<void>(), stars),
+                   faintest_v_mag);
+    if (field_->synthetic()) drawn_ = {field_->synthetic()->to_v_mag(), true};
   }
   if (!stars->is_small()) {
     sum_up(*stars);
@@ -194,31 +188,32 @@ void StarFacts::add_stars(const View& view, PlanFacts& f) const {
   }
   f.stars = f.stars_brighter.back();
   f.brightest_star_e = electrons * stars.brightest;
-  if (synthetic_) add_synthetic(axis, seen_rad, electrons, f);
+  if (field_ && field_->synthetic())
+    add_synthetic(*field_->synthetic(), axis, seen_rad, electrons, f);
 }
 
 /// A star may be as bright in the band as any of its magnitude.
-void StarFacts::add_synthetic(const Vec<Gcrs>& axis, double seen_rad, double electrons,
+void StarFacts::add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis, double seen_rad, double electrons,
                               PlanFacts& f) const {
   double brightest_colour = 0.0;  // of synthetic ones
   for (const double bv : {least_bv, double(default_star_bv), greatest_bv})
     brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
   for (std::size_t m = 0; m < star_limits; ++m) {
-    const double limit = std::max(double(m), synthetic_->from_v_mag());
-    if (limit >= synthetic_->to_v_mag()) break;
+    const double limit = std::max(double(m), synthetic.from_v_mag());
+    if (limit >= synthetic.to_v_mag()) break;
     const double left_e = electrons * brightest_colour * light_of_magnitude(limit);
-    if (!to_frame_limit_ || SyntheticBackground::is_seen(left_e, f)) f.synthetic_left_e[m] = left_e;
+    if (!to_frame_limit() || SyntheticBackground::is_seen(left_e, f)) f.synthetic_left_e[m] = left_e;
   }
   // In wide fields as all of the sky has them, else as this part of it has.
   const bool is_wide = seen_rad >= widest_counted_rad;
   const double share = share_of_sky(seen_rad);
   double made = 0.0;
   for (std::size_t m = 0; m < star_limits; ++m) {
-    const double limit = std::min(double(m), synthetic_->to_v_mag());
-    if (limit > synthetic_->from_v_mag() && double(m) < synthetic_->to_v_mag() + 1.0)
+    const double limit = std::min(double(m), synthetic.to_v_mag());
+    if (limit > synthetic.from_v_mag() && double(m) < synthetic.to_v_mag() + 1.0)
       made = is_wide
-                 ? share * (stars_of_all_sky(limit) - stars_of_all_sky(synthetic_->from_v_mag()))
-                 : synthetic_->expected_around(axis, seen_rad, limit);
+                 ? share * (stars_of_all_sky(limit) - stars_of_all_sky(synthetic.from_v_mag()))
+                 : synthetic.expected_around(axis, seen_rad, limit);
     f.synthetic_brighter[m] = made;
   }
 }

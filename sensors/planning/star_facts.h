@@ -1,14 +1,12 @@
 #pragma once
 #include <array>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/effects/plan_facts.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/faint_starlight.h"
-#include "core/sky/stars/star_map.h"
-#include "core/sky/stars/synthetic_stars.h"
-#include "sensors/scene/view.h"
+#include "sensors/sky/field_stars.h"
 
 namespace dmise {
 
@@ -22,7 +20,7 @@ class StarFacts {
   const DrawnStars& drawn() const { return drawn_; }
 
   /// Whether synthetic stars end where none stands out of a frame's noise.
-  bool to_frame_limit() const { return to_frame_limit_; }
+  bool to_frame_limit() const { return field_ && field_->to_frame_limit(); }
 
   /// Sets what is known of the stars in an exposure. The sky's facts must be there.
   void add(const View& view, PlanFacts& facts) const;
@@ -30,7 +28,7 @@ class StarFacts {
  private:
   void add_trails(const View& view, PlanFacts& facts) const;
   void add_stars(const View& view, PlanFacts& facts) const;
-  void add_synthetic(const Vec<Gcrs>& axis, double seen_rad, double electrons,
+  void add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis, double seen_rad, double electrons,
                      PlanFacts& facts) const;
 
   /// Stars by whole V magnitudes: those not fainter, and the light of the brightest beyond
@@ -49,8 +47,7 @@ class StarFacts {
   const StarMap* stars_;
   double faintest_v_mag_;
   DrawnStars drawn_;
-  std::unique_ptr<const SyntheticStars> synthetic_;  // null: there are none
-  bool to_frame_limit_ = false;                      // they end where none stands out of the noise
+  std::optional<FieldStars> field_;  // where synthetic stars may be drawn
   StarLight light_;
   ByLimit whole_sky_;
   double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0;

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/files/paths.h"
 #include "core/base/files/whole_file.h"
+#include "core/run/run_files.h"
 
 namespace dmise {
 namespace {
@@ -31,8 +32,8 @@ PositionFiles::PositionFiles(std::string directory, const OutputConfig& output,
       creation_date_(std::move(creation_date)),
       with_oem_(output.positions_oem),
       in_enu_(output.positions_enu) {
-  if (output.positions_csv) csv_.path = directory_ + "/positions.csv";
-  if (output.positions_jsonl) json_.path = directory_ + "/positions.jsonl";
+  if (output.positions_csv) csv_.path = path_in(directory_, run_file::positions_csv);
+  if (output.positions_jsonl) json_.path = path_in(directory_, run_file::positions);
   make_directories(with_oem_ ? directory_ + "/positions" : directory_);
 }
 
@@ -92,8 +93,8 @@ void PositionFiles::add(const std::vector<PositionRow>& rows, const std::string&
 
 Tick last_tick_written(const std::string& directory) {
   Tick last = -1;
-  for (const char* name : {"/positions.csv", "/positions.jsonl"}) {
-    std::ifstream file(directory + name);
+  for (const RunFile& table : {run_file::positions_csv, run_file::positions}) {
+    std::ifstream file(path_in(directory, table));
     std::string line;
     Tick here = -1;
     while (std::getline(file, line) && !file.eof())

@@ -11,13 +11,13 @@
 #include "core/optics/projection.h"
 #include "core/score/matched_filter.h"
 #include "core/sky/air/airmass.h"
-#include "sensors/light/sky_layer.h"
-#include "sensors/light/star_layer.h"
-#include "sensors/light/thermal_optics.h"
 #include "sensors/objects/object_sampler.h"
 #include "sensors/objects/objects_in_field.h"
 #include "sensors/objects/world_source.h"
 #include "sensors/outlook/detection_limit.h"
+#include "sensors/sky/field_stars.h"
+#include "sensors/sky/sky_light.h"
+#include "sensors/sky/thermal_optics.h"
 #include "sensors/survey/trail_in_frame.h"
 
 namespace dmise {
@@ -30,7 +30,7 @@ constexpr double abrupt_ratio = 0.5;
 DrawnStars drawn_of(const SurveyScene& scene, const SensorConfig& sensor) {
   if (!scene.stars() || !sensor.effects.has(StarBackground::facts)) return {};
   const double faintest_v_mag = scene.scenario().faintest_star_mag;
-  return StarLayer(sensor, scene.stars(), faintest_v_mag).drawn(faintest_v_mag, sensor.effects);
+  return FieldStars(sensor, scene.stars(), faintest_v_mag).drawn(faintest_v_mag, sensor.effects);
 }
 
 /// Sets the lengths of a look that compare its trail with a star's at its centroid.

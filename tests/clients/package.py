@@ -32,7 +32,7 @@ def require(*modules, how="./dmise setup --tests"):
 
 def run_python(code):
     """Words that another process of Python prints."""
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120,
                           env={**os.environ, "PYTHONPATH": PACKAGE}).stdout.split()
 
 

@@ -30,11 +30,12 @@ std::string complaint(const std::string& text) {
 TEST(FusionConfig, ReadsItsKeys) {
   const FusionConfig c = read(
       "{catalogue_sigma_m: [1, 2, 3], gate_d2: 25, detection_probability: 0.5, tentative_s: 30,\n"
-      " not_in_catalogue: [MYSTERY, 12345]}");
+      " confirm_unknown: 9, not_in_catalogue: [MYSTERY, 12345]}");
   EXPECT_EQ(c.settings.catalogue_sigma_m, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(c.settings.gate_d2, 25);
   EXPECT_EQ(c.settings.detection_probability, 0.5);
   EXPECT_EQ(c.settings.tentative_s, 30);
+  EXPECT_EQ(c.settings.confirm_unknown, 9);
   EXPECT_EQ(c.settings.lost_after_s, FusionSettings().lost_after_s);
   EXPECT_EQ(c.not_in_catalogue, (std::vector<std::string>{"MYSTERY", "12345"}));
   EXPECT_EQ(read("on").settings.gate_d2, FusionSettings().gate_d2);

@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
+#include <span>
 #include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/files/text_fields.h"
 #include "core/base/files/text_file.h"
+#include "core/config/scenario.h"
+#include "core/config/scenario_text.h"
 #include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
@@ -86,6 +90,72 @@ TEST(Schema, EveryDefaultIsAValueThatItsKeyMayHave) {
   EXPECT_GT(checked, 100u);
 }
 
+using Way = std::vector<std::string>;  // keys, and numbers of items, from a file to a value
+
+YAML::Node at(const YAML::Node& node, std::span<const std::string> way) {
+  if (way.empty()) return node;
+  return at(node.IsSequence() ? node[std::stoul(way[0])] : node[way[0]], way.subspan(1));
+}
+
+struct GivenKey {
+  Way map;
+  const Key* key;
+};
+
+void collect(const YAML::Node& value, const Forms& forms, const Way& way,
+             std::vector<GivenKey>& found) {
+  for (const Form& form : forms) {
+    if (form.kind == Form::Kind::list && value.IsSequence()) {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        Way item = way;
+        item.push_back(std::to_string(i));
+        collect(value[i], form.items, item, found);
+      }
+    } else if (form.kind == Form::Kind::map && value.IsMap()) {
+      for (const Key& key : form.section().keys)
+        if (const YAML::Node inner = value[key.name]) {
+          found.push_back({way, &key});
+          Way here = way;
+          here.push_back(key.name);
+          collect(inner, key.forms, here, found);
+        }
+    }
+  }
+}
+
+/// What determines the products; empty if it is no scenario.
+std::string physics_of(const YAML::Node& scenario, const std::string& path) {
+  try {
+    return physics_json(scenario_of_text(YAML::Dump(scenario), path));
+  } catch (const ConfigError&) {
+    return "";
+  }
+}
+
+// Of the keys of every_key that its other keys do not need.
+TEST(Schema, ADefaultIsWhatHoldsWithoutTheKey) {
+  setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
+  const std::string path = DMISE_SOURCE_DIR "/tests/docs/every_key/scenario.yaml";
+  const YAML::Node all = YAML::LoadFile(path);
+  std::vector<GivenKey> given;
+  collect(all, form::map(file_kinds()[0].section), {}, given);
+  std::set<const Key*> compared;
+  for (const auto& [map, key] : given) {
+    if (compared.contains(key) || std::ranges::none_of(key->forms, [&](const Form& form) {
+          return form.kind != Form::Kind::text && accepts(form, key->otherwise);
+        }))
+      continue;
+    const YAML::Node with = YAML::Clone(all), without = YAML::Clone(all);
+    at(with, map)[key->name] = key->otherwise;
+    at(without, map).remove(key->name);
+    const std::string stated = physics_of(with, path), absent = physics_of(without, path);
+    if (stated.empty() || absent.empty()) continue;
+    compared.insert(key);
+    EXPECT_EQ(stated, absent) << key->name << ": " << key->otherwise;
+  }
+  EXPECT_GT(compared.size(), 100u);
+}
+
 TEST(Schema, StatesTheGreatestSeedAndBothRangesOfACoefficient) {
   const std::string page = schema_markdown(file_kinds()[0]);
   EXPECT_NE(page.find("| `seed` | integer 0 to 9223372036854775807 |"), std::string::npos);
@@ -109,8 +179,8 @@ std::string complaint(const std::string& text) {
   try {
     YamlMap map(YamlValue::parse(text, "l.yaml"), lens_section());
     map.number("pitch_m");
-    map.number_or("gain", 2.0);
-    map.flag_or("sharp", true);
+    map.number("gain");
+    map.flag("sharp");
     map.done();
   } catch (const ConfigError& e) {
     return e.what();
@@ -137,8 +207,13 @@ TEST(Section, LetsReadersTakeNothingThatItDoesNotSay) {
   YamlMap map(YamlValue::parse("pitch_m: 1\nother: 1\n", "l.yaml"), lens_section());
   EXPECT_THROW(map.find("other"), std::logic_error);              // a key that it lacks
   EXPECT_THROW(map.require("pitch_m").flag(), std::logic_error);  // another type
-  EXPECT_THROW(map.number_or("gain", 3.0), std::logic_error);     // another default
-  EXPECT_THROW(map.flag_or("sharp", false), std::logic_error);
+}
+
+TEST(Section, GivesReadersItsDefaults) {
+  YamlMap map(YamlValue::parse("pitch_m: 1\n", "l.yaml"), lens_section());
+  EXPECT_EQ(map.number("gain"), 2.0);
+  EXPECT_TRUE(map.flag("sharp"));
+  EXPECT_THROW(map.flag("pitch"), ConfigError);  // it has none
 }
 
 }  // namespace

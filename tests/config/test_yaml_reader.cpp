@@ -27,7 +27,7 @@ TEST(YamlReader, ReadsWhatIsThere) {
                       [](YamlMap& m) {
                         EXPECT_EQ(m.number("a"), 1.5);
                         YamlMap b(m.require("b"));
-                        EXPECT_TRUE(b.flag_or("c", false));
+                        EXPECT_TRUE(b.flag("c"));
                         EXPECT_EQ(b.require("d").list().at(1).text(), "y");
                         b.done();
                       }),
@@ -64,9 +64,9 @@ TEST(YamlReader, NamesTheBoundOfAWholeNumberThatIsTooLong) {
 }
 
 TEST(YamlReader, RefusesUnknownKeysWithASuggestion) {
-  EXPECT_EQ(complaint("exposur_s: 1\n", [](YamlMap& m) { m.number_or("exposure_s", 1.0); }),
+  EXPECT_EQ(complaint("exposur_s: 1\n", [](YamlMap& m) { m.find("exposure_s"); }),
             "s.yaml:1:1: exposur_s: unknown key, did you mean exposure_s?");
-  EXPECT_EQ(complaint("colour: 1\n", [](YamlMap& m) { m.number_or("exposure_s", 1.0); }),
+  EXPECT_EQ(complaint("colour: 1\n", [](YamlMap& m) { m.find("exposure_s"); }),
             "s.yaml:1:1: colour: unknown key");
 }
 
@@ -98,7 +98,7 @@ TEST(YamlReader, EveryChoiceHasASuggestion) {
   const std::vector<std::string_view> words{"wait", "fail", "drop"};
   EXPECT_EQ(complaint("a: wiat\n", [&](YamlMap& m) { m.require("a").choice(words); }),
             "s.yaml:1:4: a: must be one of wait, fail, drop, did you mean wait?, got wiat");
-  EXPECT_EQ(complaint("a: offf\n", [](YamlMap& m) { m.flag_or("a", true); }),
+  EXPECT_EQ(complaint("a: offf\n", [](YamlMap& m) { m.flag("a"); }),
             "s.yaml:1:4: a: must be on or off, did you mean off?, got offf");
   EXPECT_EQ(nearest_name("unifrom", {"uniform"}), "uniform");
   EXPECT_EQ(nearest_name("4", {"3", "5"}), "");

@@ -57,6 +57,8 @@ def faults(layers):
         for used in layer["uses"]:
             if place.get(used, len(layers)) >= place[layer["folder"]]:
                 yield f"docs/layers.toml: {layer['folder']} uses {used}, which is not above it"
+            if used in layer.get("never", ()):
+                yield f"docs/layers.toml: {layer['folder']} uses {used}, which it must never"
     seen = {layer["folder"]: set() for layer in layers}
     by_folder = {layer["folder"]: set(layer["uses"]) | set(layer.get("libraries", ())) for layer in layers}
     for path in sources():

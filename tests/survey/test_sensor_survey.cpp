@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/visibility/passes.h"
-#include "sensors/survey/rendered_check.h"
+#include "sensors/accuracy/rendered_check.h"
 #include "tests/survey/network.h"
 
 namespace dmise {

@@ -56,6 +56,14 @@ DMISE_INLINE F64 splat(double x) { return x - F64{}; }
 DMISE_INLINE F32 to_f32(I32 v) { return __builtin_convertvector(v, F32); }
 DMISE_INLINE I32 to_i32(F32 v) { return __builtin_convertvector(v, I32); }  // truncates
 
+/// The polynomial of these coefficients, that of the highest power first, by Horner's scheme.
+template <class V, class C, class... Others>
+DMISE_INLINE V polynomial(V x, C highest, Others... others) {
+  V sum = splat(highest);
+  ((sum = sum * x + others), ...);
+  return sum;
+}
+
 DMISE_INLINE F32 max(F32 a, F32 b) { return a > b ? a : b; }
 DMISE_INLINE F32 min(F32 a, F32 b) { return a < b ? a : b; }
 DMISE_INLINE F64 max(F64 a, F64 b) { return a > b ? a : b; }

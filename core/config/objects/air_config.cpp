@@ -7,6 +7,7 @@
 #include "core/config/yaml/cn2_file.h"
 #include "core/config/yaml/search_path.h"
 #include "core/sky/air/extinction.h"
+#include "core/sky/day_sky.h"
 
 namespace dmise {
 namespace {
@@ -110,10 +111,13 @@ const Section& atmosphere_section() {
        optional("aerosol_optical_depth", form::number(0.0, 5.0),
                 "Optical depth of haze towards the zenith at 550 nm, for the day sky alone.",
                 "what `extinction` has beyond molecules and ozone"),
-       optional("angstrom_exponent", form::number(-1.0, 4.0),
-                "Haze's depth goes by the wavelength to minus this, for the day sky alone.", "1.3"),
-       optional("ground_albedo", air_share(), "Share of light that the ground reflects by day.",
-                "0.2")}};
+       bound<&AtmosphereConfig::angstrom_exponent>(
+           "angstrom_exponent", form::number(-1.0, 4.0),
+           "Haze's depth goes by the wavelength to minus this, for the day sky alone.",
+           shortest_text(Haze().angstrom_exponent)),
+       bound<&AtmosphereConfig::ground_albedo>("ground_albedo", air_share(),
+                                               "Share of light that the ground reflects by day.",
+                                               shortest_text(DayAir().ground_albedo))}};
   return section;
 }
 
@@ -160,9 +164,7 @@ AtmosphereConfig read_atmosphere(const YamlValue& value, AtmosphereConfig known)
     known.turbulence = read_turbulence(*turbulence);
   if (const auto depth = map.find("aerosol_optical_depth"))
     known.aerosol_optical_depth = depth->number();
-  if (const auto exponent = map.find("angstrom_exponent"))
-    known.angstrom_exponent = exponent->number();
-  if (const auto albedo = map.find("ground_albedo")) known.ground_albedo = albedo->number();
+  read_bound(map, known);
   map.done();
   return known;
 }
@@ -199,9 +201,11 @@ const Section& seeing_section() {
                "a profile."),
            optional("outer_scale_m", form::number(0.1, 1e6), "Outer scale [m].", "infinite"),
            optional("wind_m_per_s", form::number(0.0, 1e4),
-                    "Wind that carries the turbulence past the pupil [m/s].", "10"),
-           optional("wind_direction_deg", form::number(-360.0, 360.0),
-                    "Direction of the wind across the image [deg].", "0")},
+                    "Wind that carries the turbulence past the pupil [m/s].",
+                    shortest_text(SensorSeeing().wind_m_per_s)),
+           bound<&SensorSeeing::wind_direction_deg>(
+               "wind_direction_deg", form::number(-360.0, 360.0),
+               "Direction of the wind across the image [deg].")},
           turbulence_keys())};
   return section;
 }
@@ -217,10 +221,10 @@ SensorSeeing read_seeing(const YamlValue& value, double airmass) {
     seeing.wind_m_per_s = t.wind_m_per_s;
   } else {
     seeing.r0_m = map.number("r0_m");
-    seeing.wind_m_per_s = map.number_or("wind_m_per_s", 10.0);
+    seeing.wind_m_per_s = map.number("wind_m_per_s");
   }
   if (const auto v = map.find("outer_scale_m")) seeing.outer_scale_m = v->number();
-  seeing.wind_direction_deg = map.number_or("wind_direction_deg", 0.0);
+  read_bound(map, seeing);
   map.done();
   return seeing;
 }

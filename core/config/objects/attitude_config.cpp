@@ -62,7 +62,7 @@ SpinningAttitude read_spinning(const YamlValue& value) {
   attitude.rate_rad_per_s = map.number("rate_rpm") * 2 * pi / 60;
   if (const auto start = map.find("gcrs_from_body"))
     attitude.gcrs_from_body = rotation_in<Gcrs, Body>(*start);
-  const double phase_rad = map.number_or("phase_deg", 0.0) * deg;
+  const double phase_rad = map.number("phase_deg") * deg;
   map.done();
   // The phase is the rotation of the body at the start.
   SpinningAttitude turn{.axis = attitude.axis, .rate_rad_per_s = phase_rad};

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/config/objects/named_motion.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/time/clock.h"
@@ -60,9 +61,8 @@ BreakupEvent read_event(YamlMap& map, const YamlValue& value) {
   } else {
     for (const auto& other : {projectile, speed})
       if (other) other->fail("goes with kind: collision", false);
-    event.scale = map.number_or("scale", 1.0);
   }
-  event.least_length_m = map.number_or("least_length_m", 0.1);
+  read_bound(map, event);
   const auto least = map.find("least_length_m");
   const double count = pieces_over(event, event.least_length_m);
   if (!(count < max_fragments + 1.0))
@@ -91,14 +91,14 @@ const Section& breakup_section() {
                 "Which area-to-mass ratios pieces over 8 cm have.",
                 "`upper_stage` of an explosion, `spacecraft` of a collision"),
        required("mass_kg", form::above(0.0, 1e6), "Mass of the parent [kg]."),
-       optional("scale", form::above(0.0, 1000.0),
-                "S of an explosion: 1 is an upper stage of 600 to 1000 kg.", "1"),
+       bound<&BreakupEvent::scale>("scale", form::above(0.0, 1000.0),
+                                   "S of an explosion: 1 is an upper stage of 600 to 1000 kg."),
        optional("projectile_mass_kg", form::above(0.0, 1e6),
                 "Mass of what hit it [kg]; needed of a collision."),
        optional("relative_speed_m_per_s", form::above(0.0, 1e5),
                 "Speed at which that hit it [m/s]; needed of a collision."),
-       optional("least_length_m", form::number(1e-3, 1.0),
-                "Characteristic length of the smallest pieces [m].", "0.1"),
+       bound<&BreakupEvent::least_length_m>("least_length_m", form::number(1e-3, 1.0),
+                                            "Characteristic length of the smallest pieces [m]."),
        optional("seed", form::seed(), "Seed of the pieces.", "that of the scenario")}};
   return section;
 }

@@ -50,7 +50,7 @@ KeplerElements read_elements(YamlMap& map) {
     eccentricity.fail("must be < 1 with semi_major_axis_m; open orbits need periapsis_m");
   k.periapsis_m = axis ? axis->number() * (1 - k.eccentricity) : periapsis->number();
   k.inclination_rad = map.number("inclination_deg") * deg;
-  const auto angle = [&](const char* key) { return map.number_or(key, 0.0) * deg; };
+  const auto angle = [&](const char* key) { return map.number(key) * deg; };
   k.raan_rad = angle("raan_deg");
   k.argument_of_perigee_rad = angle("argument_of_perigee_deg");
   k.true_anomaly_rad = angle("true_anomaly_deg");
@@ -125,8 +125,7 @@ TwoBodyMotion read_conic(const YamlValue& value, const Section& section, const U
   TwoBodyMotion motion;
   const auto epoch = map.find("epoch");
   motion.epoch = Clock(epoch ? epoch->time() : start).tai({0});
-  if (section.find("gm_m3_per_s2"))
-    motion.gm_m3_per_s2 = map.number_or("gm_m3_per_s2", earth_gm_m3_per_s2);
+  if (section.find("gm_m3_per_s2")) motion.gm_m3_per_s2 = map.number("gm_m3_per_s2");
   const auto position = map.find("position_m"), velocity = map.find("velocity_m_per_s");
   if (position || velocity) {
     motion.state.position_m = vector_of<Gcrs>(map.require("position_m"));

@@ -1,6 +1,7 @@
 #include "core/config/objects/earth_config.h"
 
 #include "core/base/files/json.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
@@ -22,7 +23,8 @@ const Section& origin_section() {
       "The place of the scenario's east, north and up.",
       {required("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
        required("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
-       optional("height_m", form::number(-12e3, 1e9), "Height above the ellipsoid [m].", "0")}};
+       bound<&Site::height_m>("height_m", form::number(-12e3, 1e9),
+                              "Height above the ellipsoid [m].")}};
   return section;
 }
 
@@ -42,23 +44,23 @@ std::vector<Key> earth_keys() {
                    "The figure of the Earth: of sites, heights, shadow and limb.", "WGS84"),
           optional("origin", form::map(origin_section),
                    "The place of east, north and up, for motions, cameras and positions."),
-          optional("earth_albedo", form::number(0.0, 1.0),
-                   "Share of the light that the Earth returns, as a diffuse ellipsoid: of its disc "
-                   "and of earthshine.",
-                   "0.3")};
+          bound<&EarthConfig::albedo>(
+              "earth_albedo", form::number(0.0, 1.0),
+              "Share of the light that the Earth returns, as a diffuse ellipsoid: of its disc "
+              "and of earthshine.")};
 }
 
 EarthConfig read_earth(YamlMap& simulation) {
   EarthConfig earth;
-  earth.albedo = simulation.number_or("earth_albedo", earth.albedo);
+  read_bound(simulation, earth);
   if (const auto ellipsoid = simulation.find("ellipsoid"))
     earth.ellipsoid = read_ellipsoid(*ellipsoid);
   if (const auto origin = simulation.find("origin")) {
     YamlMap map(*origin, origin_section());
     earth.origin = Site{.latitude_deg = map.number("latitude_deg"),
                         .longitude_deg = map.number("longitude_deg"),
-                        .height_m = map.number_or("height_m", 0.0),
                         .ellipsoid = earth.ellipsoid};
+    read_bound(map, *earth.origin);
     map.done();
   }
   return earth;

@@ -1,6 +1,7 @@
 #include "core/config/objects/flight_config.h"
 
 #include "core/base/files/json.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/vector_values.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/time/clock.h"
@@ -14,18 +15,16 @@ FlightForceSettings read_forces(const YamlValue& value) {
   YamlMap map(value, forces_section());
   FlightForceSettings forces;
   const auto degree = map.find("gravity_degree");
-  forces.gravity_degree = int(map.integer_or("gravity_degree", 20));
+  read_bound(map, forces);
   if (forces.gravity_degree == 1) degree->fail("must be 0 or 2 to 70");
-  forces.sun_moon = map.flag_or("sun_moon", true);
   const auto area = map.find("area_to_mass_m2_per_kg");
   for (const char* key : {"drag", "radiation", "drag_coefficient", "radiation_coefficient"})
     if (const auto given = map.find(key); given && !area)
       given->fail("goes with area_to_mass_m2_per_kg", false);
   const double area_to_mass = area ? area->number() : 0.0;
-  if (map.flag_or("drag", true))
-    forces.drag_m2_per_kg = map.number_or("drag_coefficient", 2.2) * area_to_mass;
-  if (map.flag_or("radiation", true))
-    forces.radiation_m2_per_kg = map.number_or("radiation_coefficient", 1.3) * area_to_mass;
+  if (map.flag("drag")) forces.drag_m2_per_kg = map.number("drag_coefficient") * area_to_mass;
+  if (map.flag("radiation"))
+    forces.radiation_m2_per_kg = map.number("radiation_coefficient") * area_to_mass;
   map.done();
   return forces;
 }
@@ -70,11 +69,12 @@ const Section& forces_section() {
   static const Section section{
       "forces",
       "What acts on an object that flies by numerical integration.",
-      {optional("gravity_degree", form::integer(0, GravityField::highest_degree),
-                "Degree and order of the Earth's gravity, EGM2008; 0: a point mass.", "20"),
-       optional("sun_moon", form::flag(),
-                "Attraction of Sun and Moon, and of the tides that they raise in the solid Earth.",
-                "on"),
+      {bound<&FlightForceSettings::gravity_degree>(
+           "gravity_degree", form::integer(0, GravityField::highest_degree),
+           "Degree and order of the Earth's gravity, EGM2008; 0: a point mass."),
+       bound<&FlightForceSettings::sun_moon>(
+           "sun_moon", form::flag(),
+           "Attraction of Sun and Moon, and of the tides that they raise in the solid Earth."),
        optional("area_to_mass_m2_per_kg", form::number(0.0, 1000.0),
                 "Cross-section over mass [m^2/kg]. Without it neither air nor sunlight acts."),
        optional("drag", form::flag(), "Drag of the air.", "on"),

@@ -8,6 +8,7 @@
 #include "core/base/files/json.h"
 #include "core/base/units.h"
 #include "core/config/objects/material_config.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/materials/obj_file.h"
@@ -47,11 +48,11 @@ class Reader {
 
   Mesh model(const std::string& name) {
     if (name == "sphere")
-      return sphere(map_.number_or("radius_m", 1.0), std::size_t(map_.integer_or("facets", 1280)),
+      return sphere(map_.number("radius_m"), std::size_t(map_.integer("facets")),
                     material("material"));
     if (name == "cylinder")
-      return cylinder(map_.number_or("radius_m", 1.0), map_.number_or("length_m", 2.0),
-                      int(map_.integer_or("sides", 48)), material("material"));
+      return cylinder(map_.number("radius_m"), map_.number("length_m"), int(map_.integer("sides")),
+                      material("material"));
     if (name == "plate") {
       const auto size = sizes(map_, "size_m", 2, {1.0, 1.0});
       return plate(size[0], size[1], material("front"), material("back"));
@@ -70,9 +71,7 @@ class Reader {
     BoxWing size;
     const auto body = sizes(map_, "body_m", 3, {size.body_m.x, size.body_m.y, size.body_m.z});
     size.body_m = {body[0], body[1], body[2]};
-    size.wing_length_m = map_.number_or("wing_length_m", size.wing_length_m);
-    size.wing_width_m = map_.number_or("wing_width_m", size.wing_width_m);
-    size.gap_m = map_.number_or("gap_m", size.gap_m);
+    read_bound(map_, size);
     const Material body_material = material("body", "kapton");
     const auto facing_z = map_.find("body_z");
     return box_wing(size, body_material, material("front", "silicon-cell"),
@@ -156,9 +155,9 @@ const Section& geometry_section() {
        optional("facets", form::integer(20, 200000), "Facets of a sphere, about.", "1280"),
        optional("sides", form::integer(3, 10000), "Sides of a cylinder.", "48"),
        optional("body_m", sizes(3), "Lengths of the body of a box-wing [m].", "[1.8, 1.6, 2]"),
-       optional("wing_length_m", size(), "Length of each wing, along y [m].", "5"),
-       optional("wing_width_m", size(), "Width of the wings, along x [m].", "1.8"),
-       optional("gap_m", form::number(0.0, largest_m), "Between body and wing [m].", "0.5"),
+       bound<&BoxWing::wing_length_m>("wing_length_m", size(), "Length of each wing, along y [m]."),
+       bound<&BoxWing::wing_width_m>("wing_width_m", size(), "Width of the wings, along x [m]."),
+       bound<&BoxWing::gap_m>("gap_m", form::number(0.0, largest_m), "Between body and wing [m]."),
        optional("material", form::text(), "Material of a box, sphere or cylinder.", "grey"),
        optional("front", form::text(),
                 "Material of the side towards z of a plate, of wings and of an array.",
@@ -196,10 +195,10 @@ GeometryConfig read_geometry(const YamlValue& value, bool with_panel) {
     mesh = Reader(map, library).model(model->choice());
     if (model->choice() == "starlink-like") geometry.panel = starlink_like_panel();
   }
-  const double scale = map.number_or("scale", 1.0);
+  const double scale = map.number("scale");
   mesh = scaled(std::move(mesh), scale);
   geometry.panel.hinge_m = geometry.panel.hinge_m * scale;
-  if (const double yaw_deg = map.number_or("yaw_deg", 0.0); yaw_deg != 0.0)
+  if (const double yaw_deg = map.number("yaw_deg"); yaw_deg != 0.0)
     turn_about_z(mesh, geometry.panel, yaw_deg * deg);
   map.done();
   geometry.digest = digest_of(mesh, with_panel);

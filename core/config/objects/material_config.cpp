@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
 
@@ -31,10 +32,10 @@ const Section& material_section() {
                 "Growth towards grazing angles, of sandford-robertson."),
        optional("lobe_width", form::number(0.001, 1.0),
                 "Width of the lobe, of sandford-robertson."),
-       optional("temperature_k", form::number(0.0, 3000.0),
-                "Temperature of the surface [K]; 0 emits nothing.", "0"),
-       optional("thermal_emissivity", material_share(), "Emissivity at thermal wavelengths.",
-                "0")}};
+       bound<&Material::temperature_k>("temperature_k", form::number(0.0, 3000.0),
+                                       "Temperature of the surface [K]; 0 emits nothing."),
+       bound<&Material::thermal_emissivity>("thermal_emissivity", material_share(),
+                                            "Emissivity at thermal wavelengths.")}};
   return section;
 }
 
@@ -111,9 +112,8 @@ Material read_material(const std::string& name, const YamlValue& value) {
     m = read_sandford_robertson(map, wavelength_m);
   }
   m.name = name;
-  m.source = map.text_or("source", "");
-  m.temperature_k = map.number_or("temperature_k", 0.0);
-  m.thermal_emissivity = map.number_or("thermal_emissivity", 0.0);
+  if (const auto source = map.find("source")) m.source = source->text();
+  read_bound(map, m);
   map.done();
   try {
     check_material(m);

@@ -7,6 +7,7 @@
 #include "core/base/printable.h"
 #include "core/config/objects/breakup_config.h"
 #include "core/config/objects/walker_config.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
 
@@ -17,9 +18,10 @@ constexpr std::size_t longest_name_bytes = 64;
 constexpr std::uint32_t greatest_number = 999'999'999;
 
 std::vector<Key> sphere_keys() {
-  return {optional("radius_m", form::above(0.0, 1000.0),
-                   "Radius of the diffuse sphere that is seen without a shape [m].", "1"),
-          optional("albedo", form::above(0.0, 1.0), "Its albedo.", "0.2")};
+  return {bound<&DiffuseSphere::radius_m>(
+              "radius_m", form::above(0.0, 1000.0),
+              "Radius of the diffuse sphere that is seen without a shape [m]."),
+          bound<&DiffuseSphere::albedo>("albedo", form::above(0.0, 1.0), "Its albedo.")};
 }
 
 const Section& source_section() {
@@ -63,7 +65,8 @@ const Section& fragments_section() {
        optional("name", form::text(),
                 "Unique, of 1 to 48 characters; the fragments are NAME-NUMBER, the longest first.",
                 "breakup"),
-       optional("albedo", form::above(0.0, 1.0), "Albedo of the spheres that they are.", "0.175")}};
+       optional("albedo", form::above(0.0, 1.0), "Albedo of the spheres that they are.",
+                shortest_text(fragment_albedo))}};
   return section;
 }
 
@@ -89,9 +92,9 @@ const Section& own_section() {
 }
 
 DiffuseSphere read_sphere(YamlMap& map) {
-  const DiffuseSphere usual;
-  return {.radius_m = map.number_or("radius_m", usual.radius_m),
-          .albedo = map.number_or("albedo", usual.albedo)};
+  DiffuseSphere sphere;
+  read_bound(map, sphere);
+  return sphere;
 }
 
 ObjectSource read_object_source(const YamlValue& value) {
@@ -140,7 +143,7 @@ ObjectSource read_fragments(const YamlValue& value, const Utc& start) {
   source.named = name ? printable(name->text()) : "breakup";
   check_name(source, name);
   source.breakup->name = source.named;
-  source.sphere.albedo = map.number_or("albedo", fragment_albedo);
+  source.sphere.albedo = map.number("albedo");
   map.done();
   return source;
 }

@@ -13,6 +13,7 @@
 #include "core/base/files/json.h"
 #include "core/base/files/text_fields.h"
 #include "core/base/printable.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/trusted_directories.h"
 #include "core/config/yaml/yaml_reader.h"
 
@@ -87,16 +88,17 @@ const Section& own_node_section() {
                 "The program is started by whoever joins it, with `dmise join SCENARIO NAME "
                 "--program`.",
                 "off"),
-       optional("period_ticks", form::integer(1, longest_period_ticks),
-                "Ticks between those for which the program is asked for states. Cubics join the "
-                "others.",
-                "1"),
+       bound<&OwnNode::period_ticks>(
+           "period_ticks", form::integer(1, longest_period_ticks),
+           "Ticks between those for which the program is asked for states. Cubics join the "
+           "others."),
        optional("consumes", form::list(form::text(), 1),
                 "Topics that a node which moves or turns objects hears: `detection/SENSOR`, "
                 "`frame/SENSOR`, `track/fusion-node`, `task/SENSOR` and, with states as they are, "
                 "`state/actor/NODE`; `detection/*` is all that begin so."),
-       optional("delay_ticks", form::integer(1, longest_delay_ticks),
-                "Ticks after which it hears what is published on these topics.", "1"),
+       bound<&OwnNode::delay_ticks>(
+           "delay_ticks", form::integer(1, longest_delay_ticks),
+           "Ticks after which it hears what is published on these topics."),
        optional(
            "options", form::map(options_section),
            "What the program is told as it begins; of an FMU the numbers with which its parameters "
@@ -209,7 +211,6 @@ std::string fmu_json(YamlMap& map, OwnNode& node) {
 void read_consumes(YamlMap& map, OwnNode& node) {
   const auto consumes = map.find("consumes");
   const auto delay = map.find("delay_ticks");
-  node.delay_ticks = map.integer_or("delay_ticks", 1);
   if (!consumes) {
     if (delay) delay->fail("is of topics that the node consumes", false);
     return;
@@ -228,8 +229,8 @@ OwnNode read_own_node(const YamlValue& value, OwnNodeModels models) {
   node.directory = fs::absolute(value.file()).parent_path().string();
   const auto run = map.find("run");
   const auto fmu = map.find("fmu");
-  const bool elsewhere = map.flag_or("elsewhere", false);
-  node.period_ticks = map.integer_or("period_ticks", 1);
+  const bool elsewhere = map.flag("elsewhere");
+  read_bound(map, node);
   if (const auto options = map.find("options")) node.options_json = read_options(*options);
   if (fmu) node.options_json = fmu_json(map, node);
   node.is_fmu = bool(fmu);

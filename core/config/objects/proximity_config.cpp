@@ -79,8 +79,8 @@ Circumnavigation read_circumnavigation(const YamlValue& value) {
   YamlMap map(value, circumnavigation_section());
   Circumnavigation motion{.radial_m = map.number("radial_m")};
   read_bound(map, motion);
-  motion.phase_rad = map.number_or("phase_deg", 0.0) * deg;
-  motion.normal_phase_rad = map.number_or("normal_phase_deg", 0.0) * deg;
+  motion.phase_rad = map.number("phase_deg") * deg;
+  motion.normal_phase_rad = map.number("normal_phase_deg") * deg;
   map.done();
   if (!(motion.radial_m > 0 || motion.normal_m > 0))
     value.fail("needs a radial_m or a normal_m above 0", false);

@@ -6,6 +6,7 @@
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/sky/air/infrared_gases.h"
 #include "core/sky/surface_brightness.h"
@@ -51,8 +52,9 @@ const Section& city_section() {
                 "40.1"),
        optional("height_deg", form::number(1.0, 90.0),
                 "Altitude at which the glow has fallen to 1/e [deg].", "14.9"),
-       optional("horizon_over_zenith", form::number(0.0, 1e4),
-                "Its peak, in units of the zenith's even light pollution.", "5")}};
+       bound<&CityGlow::horizon_over_zenith>(
+           "horizon_over_zenith", form::number(0.0, 1e4),
+           "Its peak, in units of the zenith's even light pollution.")}};
   return section;
 }
 
@@ -99,9 +101,7 @@ void read_zenith(const YamlValue& value, SkyConfig& sky) {
 
 LampMix read_lamps(const YamlValue& value) {
   YamlMap map(value, lamps_section());
-  LampMix lamps{.lps = map.number_or("lps", 0.0),
-                .hps = map.number_or("hps", 0.0),
-                .led = map.number_or("led", 0.0)};
+  LampMix lamps{.lps = map.number("lps"), .hps = map.number("hps"), .led = map.number("led")};
   map.done();
   if (lamps.lps + lamps.hps + lamps.led <= 0) value.fail("one share must be > 0", false);
   return lamps;
@@ -113,7 +113,7 @@ CityGlow read_city(const YamlValue& value) {
   city.azimuth_rad = map.number("azimuth_deg") * deg;
   if (const auto width = map.find("half_width_deg")) city.half_width_rad = width->number() * deg;
   if (const auto height = map.find("height_deg")) city.height_rad = height->number() * deg;
-  city.horizon_over_zenith = map.number_or("horizon_over_zenith", city.horizon_over_zenith);
+  read_bound(map, city);
   map.done();
   return city;
 }

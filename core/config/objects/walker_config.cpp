@@ -47,8 +47,8 @@ Walker read_orbit(YamlMap& map, const YamlValue& value, const Utc& start) {
   Walker orbit;
   orbit.semi_major_axis_m = axis_of(map, value);
   orbit.inclination_rad = map.number("inclination_deg") * deg;
-  orbit.raan_rad = map.number_or("raan_deg", 0.0) * deg;
-  orbit.argument_of_latitude_rad = map.number_or("argument_of_latitude_deg", 0.0) * deg;
+  orbit.raan_rad = map.number("raan_deg") * deg;
+  orbit.argument_of_latitude_rad = map.number("argument_of_latitude_deg") * deg;
   const auto epoch = map.find("epoch");
   orbit.epoch = epoch ? epoch->time() : start;
   return orbit;
@@ -98,7 +98,7 @@ Walker read_walker(const YamlValue& value, const Utc& start) {
     walker.phasing = int(phasing->integer());
     if (walker.phasing >= walker.planes) phasing->fail("must be below the number of planes");
   }
-  walker.raan_spread_rad = map.number_or("raan_spread_deg", 360.0) * deg;
+  walker.raan_spread_rad = map.number("raan_spread_deg") * deg;
   map.done();
   return walker;
 }

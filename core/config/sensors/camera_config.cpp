@@ -89,7 +89,7 @@ Camera read_camera(const YamlValue& value) {
   if (value.is_scalar()) return read_camera(load_preset("camera", value));
   YamlMap map(value, camera_section());
   Camera camera;
-  camera.name = map.text_or("name", "camera");
+  camera.name = map.text("name");
   map.find("source");  // informative only
   camera.optics = read_optics(map.require("optics"));
   camera.detector = read_detector(map.require("detector"));

@@ -6,6 +6,7 @@
 
 #include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/optics/waves/pupil.h"
 
@@ -91,12 +92,13 @@ const Section& vignetting_section() {
   static const Section section{
       "vignetting", "Light lost away from the axis.",
       with_keys(
-          {optional("natural", form::flag(), "Applies the cosine of the pupil's projection.",
-                    "off"),
-           optional("corner", form::above(0.0, 1.0), "Share of the light that reaches a corner.",
-                    "1"),
-           optional("power", form::number(1.0, 16.0),
-                    "Power of the distance from the axis with which light is lost.", "2")},
+          {bound<&Vignetting::natural>("natural", form::flag(),
+                                       "Applies the cosine of the pupil's projection."),
+           bound<&Vignetting::corner>("corner", form::above(0.0, 1.0),
+                                      "Share of the light that reaches a corner."),
+           bound<&Vignetting::power>(
+               "power", form::number(1.0, 16.0),
+               "Power of the distance from the axis with which light is lost.")},
           with_keys(radius_keys(),
                     {optional("relative_illumination", form::list(form::number(0.0, 1.0)),
                               "A measured lens, in place of `natural`, `corner` and `power`: light "
@@ -121,9 +123,7 @@ Vignetting read_vignetting(const YamlValue& value) {
     for (const char* key : {"radius_deg", "radius_px"})
       if (const auto radius = map.find(key)) radius->fail("needs relative_illumination", false);
   }
-  v.natural = map.flag_or("natural", false);
-  v.corner = map.number_or("corner", 1.0);
-  v.power = map.number_or("power", 2.0);
+  read_bound(map, v);
   map.done();
   return v;
 }
@@ -200,8 +200,7 @@ const Section& focus_drift_section() {
 FocusDrift read_focus_drift(const YamlValue& value) {
   YamlMap map(value, focus_drift_section());
   FocusDrift drift;
-  for (const FocusParameter& p : focus_parameters())
-    drift.*p.value = map.number_or(p.key, drift.*p.value);
+  for (const FocusParameter& p : focus_parameters()) drift.*p.value = map.number(p.key);
   map.done();
   return drift;
 }

@@ -9,6 +9,7 @@
 #include "core/config/sensors/field_tables_config.h"
 #include "core/config/sensors/point_spread_config.h"
 #include "core/config/sensors/thermal_optics_config.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/optics/projection.h"
 
@@ -61,8 +62,8 @@ Projection read_projection(YamlMap& map) {
       distortion->fail("goes with projection: " + joined(distorted, " or "), false);
     YamlMap coefficients(*distortion, distortion_section());
     for (std::size_t i = 0; i < wanted.size(); ++i)
-      values[i] = coefficients.number_or(wanted[i].key, 0.0,
-                                         Bounds::between(-wanted[i].most, wanted[i].most));
+      if (const auto value = coefficients.find(wanted[i].key))
+        values[i] = value->number(Bounds::between(-wanted[i].most, wanted[i].most));
     coefficients.done();
   }
   return Projection::make(index, values);
@@ -110,11 +111,11 @@ const Section& optics_section() {
                   "Field across the columns [deg], in place of the focal length. The projection "
                   "limits it further."),
          required("aperture_m", length(), "Diameter of the entrance pupil [m]."),
-         optional("obscuration", form::number(0.0, 0.99),
-                  "Diameter of the secondary in that of the primary.", "0"),
-         optional("transmission", form::above(0.0, 1.0),
-                  "Share of the light that passes the optics, without filter and obscuration.",
-                  "1")}};
+         bound<&Optics::obscuration>("obscuration", form::number(0.0, 0.99),
+                                     "Diameter of the secondary in that of the primary."),
+         bound<&Optics::transmission>(
+             "transmission", form::above(0.0, 1.0),
+             "Share of the light that passes the optics, without filter and obscuration.")}};
     const auto add = [&](std::vector<Key> keys) {
       made.keys.insert(made.keys.end(), keys.begin(), keys.end());
     };
@@ -124,9 +125,9 @@ const Section& optics_section() {
                   "Light of Sun, Moon and Earth beside the field on the focal plane."),
          optional("emission", form::map(thermal_optics_section),
                   "Heat of the telescope and the window, in bands beyond 1.9 um."),
-         optional("equivalent_aperture", form::flag(),
-                  "Takes the aperture as a collecting area, which allows focal ratios below 0.5.",
-                  "off")});
+         bound<&Optics::equivalent_aperture>(
+             "equivalent_aperture", form::flag(),
+             "Takes the aperture as a collecting area, which allows focal ratios below 0.5.")});
     for (const ImageParameter& p : image_parameters())
       made.keys.push_back(optional(std::string(p.key), form::number(p.least, p.most),
                                    sentence_of(p.meaning), shortest_text(ImageOptics().*p.value)));
@@ -160,16 +161,13 @@ Optics read_optics(const YamlValue& value) {
   }
   if (const auto fold = fold_in_frame_rad(optics)) fail_fold(value, *fold);
   optics.aperture_m = map.number("aperture_m");
-  optics.obscuration = map.number_or("obscuration", 0.0);
-  optics.transmission = map.number_or("transmission", 1.0);
+  read_bound(map, optics);
   optics.spread = read_point_spread(map, optics);
   if (const auto vignetting = map.find("vignetting"))
     optics.vignetting = read_vignetting(*vignetting);
   if (const auto stray = map.find("stray_light")) optics.stray_light = read_stray_light(*stray);
   if (const auto warm = map.find("emission")) optics.thermal = read_thermal_optics(*warm);
-  for (const ImageParameter& p : image_parameters())
-    optics.image.*p.value = map.number_or(p.key, optics.image.*p.value);
-  optics.equivalent_aperture = map.flag_or("equivalent_aperture", false);
+  for (const ImageParameter& p : image_parameters()) optics.image.*p.value = map.number(p.key);
   map.done();
   if (optics.focal_length_m < 0.5 * optics.aperture_m && !optics.equivalent_aperture)
     value.fail(
@@ -182,8 +180,9 @@ Optics read_optics(const YamlValue& value) {
 void write_optics_json(JsonWriter& json, const Optics& optics) {
   write_point_spread_json(json, optics.spread);
   if (const Vignetting& v = optics.vignetting; v.any()) {
-    json.key("vignetting").begin_object().field("natural", v.natural);
-    json.field("corner", v.corner).field("power", v.power).end_object();
+    json.key("vignetting").begin_object();
+    write_bound(json, vignetting_section(), v);
+    json.end_object();
   }
   write_field_tables_json(json, optics);
   write_thermal_optics_json(json, optics.thermal);

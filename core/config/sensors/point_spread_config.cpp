@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/config/sensors/field_tables_config.h"
 #include "core/config/sensors/psf_file_config.h"
@@ -95,7 +96,8 @@ std::vector<Key> point_spread_keys() {
       optional("psf_file", form::text() | form::map(psf_file_section),
                "Images of a point source, with `psf: file`: a FITS file, or a map of it."),
       optional("psf_fwhm_px", form::number(0.3, 50.0),
-               "Full width at half maximum of the Gaussian [px], before diffraction.", "1.5"),
+               "Full width at half maximum of the Gaussian [px], before diffraction.",
+               shortest_text(Optics().psf_fwhm_px)),
       optional("spiders", form::map(spiders_section),
                "Vanes in the pupil, with `psf: diffraction`."),
       optional("defocus_m", form::number(-0.1, 0.1),
@@ -119,7 +121,8 @@ std::vector<Key> point_spread_keys() {
       optional("focus_drift", form::map(focus_drift_section),
                "The focus drifts with time and temperature."),
       optional("wavelengths", form::integer(1, 16),
-               "Wavelengths of the band at which diffraction is computed.", "1"),
+               "Wavelengths of the band at which diffraction is computed.",
+               std::to_string(PointSpread().wavelengths)),
       optional("most_screens", form::integer(1, 1000),
                "Most phase screens of a short exposure through turbulence.",
                std::to_string(PointSpread().most_screens)),
@@ -170,7 +173,7 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
   if (const auto v = of_pupil("zernike_nm")) s.wavefront = read_wavefront(*v);
   if (const auto v = of_pupil("field_nm")) {
     YamlMap field(*v, field_section());
-    const auto rms_m = [&](const char* key) { return 1e-9 * field.number_or(key, 0.0); };
+    const auto rms_m = [&](const char* key) { return 1e-9 * field.number(key); };
     s.field = {.coma_m = rms_m("coma"),
                .astigmatism_m = rms_m("astigmatism"),
                .curvature_m = rms_m("curvature")};

@@ -264,8 +264,9 @@ const Section& pointing_section() {
        optional("tracking", form::choice({std::begin(tracking_names), std::end(tracking_names)}),
                 "What the camera follows during an exposure. By default what its pointing "
                 "suggests."),
-       optional("roll_deg", any_angle(),
-                "Turns the image's up, which is north or the zenith, towards east [deg].", "0")}};
+       bound<&SensorConfig::roll_deg>(
+           "roll_deg", any_angle(),
+           "Turns the image's up, which is north or the zenith, towards east [deg].")}};
   return section;
 }
 
@@ -337,7 +338,7 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
     if (sensor.tracking == Tracking::fixed && !on_ground && (sky || target || scan))
       tracking->fail("in orbit, fixed needs a zenith or body pointing; use sidereal or target");
   }
-  sensor.roll_deg = map.number_or("roll_deg", 0.0);
+  read_bound(map, sensor);
   if (cued && sensor.tracking == Tracking::fixed)
     map.require("tracking").fail("a cued sensor follows its target or the stars");
   if (body && sensor.roll_deg != 0.0)

@@ -136,7 +136,7 @@ MeasuredPsfPointer read_psf_file(const YamlValue& value, const Optics& optics) {
   YamlMap map(value, psf_file_section());
   const YamlValue path = map.require("path");
   const auto samples = map.find("samples_per_px");
-  const bool with_pixel = map.flag_or("with_pixel", false);
+  const bool with_pixel = map.flag("with_pixel");
   map.done();
   return load_at(path, samples ? std::optional(samples->number()) : std::nullopt, with_pixel,
                  optics);

@@ -16,6 +16,7 @@
 #include "core/config/sensors/optics_config.h"
 #include "core/config/sensors/pointing_config.h"
 #include "core/config/sensors/thermal_optics_config.h"
+#include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/effects/frame_effects.h"
@@ -32,11 +33,11 @@ SiteConfig read_site(const YamlValue& value) {
   if (value.is_scalar()) return read_site(load_preset("site", value));
   YamlMap map(value, site_section());
   SiteConfig site;
-  site.name = map.text_or("name", "");
+  if (const auto name = map.find("name")) site.name = name->text();
   map.find("source");  // informative only
   site.latitude_deg = map.number("latitude_deg");
   site.longitude_deg = map.number("longitude_deg");
-  site.height_m = map.number_or("height_m", 0.0);
+  read_bound(map, site);
   read_surroundings(map, site.surroundings);
   map.done();
   return site;
@@ -164,7 +165,7 @@ void read_exposures(YamlMap& map, SimTime duration, SensorConfig& sensor) {
   sensor.exposure_s = exposure.number();
   sensor.cadence_s = map.number("cadence_s");
   if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
-  sensor.first_exposure_s = map.number_or("first_exposure_s", 0.0);
+  read_bound(map, sensor);
   if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
     exposure.fail("the first exposure ends after the run does");
 }
@@ -175,10 +176,8 @@ SensorConfig read_own_sensor(const YamlValue& value, SimTime duration, const Ear
   sensor.ellipsoid = earth.ellipsoid;
   sensor.name = map.require("name").text();
   const YamlValue node = map.require("node");
-  sensor.observing = {.node = node.text(),
-                      .where = node.place(),
-                      .truth = map.flag_or("truth", false),
-                      .half_angle_deg = map.number_or("half_angle_deg", 180.0)};
+  sensor.observing = {.node = node.text(), .where = node.place()};
+  read_bound(map, *sensor.observing);
   read_place(map, value, sensor);
   read_exposures(map, duration, sensor);
   map.done();
@@ -235,8 +234,9 @@ Key cadence_key() {
                   "Time from the beginning of an exposure to that of the next [s].");
 }
 Key first_exposure_key() {
-  return optional("first_exposure_s", form::not_negative(),
-                  "Beginning of the first exposure after the start of the run [s].", "0");
+  return bound<&SensorConfig::first_exposure_s>(
+      "first_exposure_s", form::not_negative(),
+      "Beginning of the first exposure after the start of the run [s].");
 }
 
 }  // namespace
@@ -248,8 +248,8 @@ const Section& site_section() {
                  optional("source", form::text(), "Where the numbers come from. It is not used."),
                  required("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
                  required("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
-                 optional("height_m", form::number(-500.0, 9000.0),
-                          "Height above the ellipsoid [m].", "0")},
+                 bound<&SiteConfig::height_m>("height_m", form::number(-500.0, 9000.0),
+                                              "Height above the ellipsoid [m].")},
                 surroundings_keys())};
   return section;
 }
@@ -262,12 +262,12 @@ const Section& own_sensor_section() {
       {name_key(),
        required("node", form::text(), "One of `nodes`, which is asked at each exposure."),
        site_key(), platform_key(), exposure_key(), cadence_key(), first_exposure_key(),
-       optional("truth", form::flag(),
-                "Whether the program is told the true positions and velocities of all objects.",
-                "off"),
-       optional("half_angle_deg", form::above(0.0, 180.0),
-                "Half angle of the cone about its boresight that contains its field [deg].",
-                "180")}};
+       bound<&SensorConfig::Observing::truth>(
+           "truth", form::flag(),
+           "Whether the program is told the true positions and velocities of all objects."),
+       bound<&SensorConfig::Observing::half_angle_deg>(
+           "half_angle_deg", form::above(0.0, 180.0),
+           "Half angle of the cone about its boresight that contains its field [deg].")}};
   return section;
 }
 
@@ -288,11 +288,12 @@ const Section& sensor_section() {
            optional("effects", effects_forms(), "Effects of this sensor, after the scenario's."),
            optional("seeing", form::map(seeing_section),
                     "Turbulence, for a camera with `psf: diffraction`."),
-           optional("mask_deg", form::number(0.0, 89.0),
-                    "Lowest elevation for `dmise visible` [deg], on the ground.", "0"),
            optional("malfunctions", form::list(form::map(malfunction_section)),
                     "What goes wrong with its devices in `dmise observatory`; nothing else is "
                     "changed by it. On the ground."),
+           bound<&SensorConfig::mask_deg>(
+               "mask_deg", form::number(0.0, 89.0),
+               "Lowest elevation for `dmise visible` [deg], on the ground."),
            optional("extinction_mag_per_airmass", form::number(0.0, 5.0),
                     "Extinction at 550 nm: a short form of `atmosphere: {extinction: ..}`.")},
           with_keys(surroundings_keys(), instrument_keys()))};
@@ -338,14 +339,12 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)
     sensor.effects.force(AtmosphericRefraction::facts, *sensor.atmosphere.refraction);
-  if (const auto mask = map.find("mask_deg")) {
-    if (!site) mask->fail("a mask is for a sensor on the ground", false);
-    sensor.mask_deg = mask->number();
-  }
   if (const auto malfunctions = map.find("malfunctions")) {
     if (!site) malfunctions->fail("is for a sensor on the ground", false);
     sensor.malfunctions = read_malfunctions(*malfunctions);
   }
+  if (const auto mask = map.find("mask_deg"); mask && !site)
+    mask->fail("a mask is for a sensor on the ground", false);
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   check_clock(map, sensor, duration);
   check_rows(exposure, sensor, rate_deg_per_s, duration);

@@ -84,6 +84,9 @@ Key bound(std::string name, Forms forms, std::string what, std::string otherwise
                  },
                  [](JsonWriter& json, const Key& row, const void* settings) {
                    bound_key::write(json, row, static_cast<const Settings*>(settings)->*member);
+                 },
+                 [](const void* settings) {
+                   return static_cast<const Settings*>(settings)->*member == Settings().*member;
                  }};
   return key;
 }
@@ -101,7 +104,8 @@ void read_bound(YamlMap& map, Settings& settings) {
 template <class Settings>
 void write_bound(JsonWriter& json, const Section& section, const Settings& settings) {
   for (const Key& key : section.keys)
-    if (key.binding.settings && *key.binding.settings == typeid(Settings))
+    if (key.binding.settings && *key.binding.settings == typeid(Settings) &&
+        !(key.binding.later && key.binding.is_default(&settings)))
       key.binding.write(json, key, &settings);
 }
 

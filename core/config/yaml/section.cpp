@@ -75,6 +75,11 @@ Key optional(std::string name, Forms forms, std::string what, std::string otherw
   return {std::move(name), std::move(forms), std::move(what), std::move(otherwise), false};
 }
 
+Key later(Key key) {
+  key.binding.later = true;
+  return key;
+}
+
 std::vector<Key> with_keys(std::vector<Key> keys, std::vector<Key> shared) {
   std::ranges::move(shared, std::back_inserter(keys));
   return keys;

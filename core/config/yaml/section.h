@@ -48,6 +48,9 @@ struct Binding {
   const std::type_info* settings = nullptr;  // null: none
   void (*read)(const YamlValue& value, void* settings) = nullptr;
   void (*write)(JsonWriter& json, const Key& key, const void* settings) = nullptr;
+  bool (*is_default)(const void* settings) = nullptr;
+  // The digest has it only where it is no default: it came later, and older digests stay.
+  bool later = false;
 };
 
 /// A key of a section. `otherwise` is its default, in the text of a YAML file where it is a
@@ -100,6 +103,9 @@ std::string sentence_of(std::string_view comment);
 
 Key required(std::string name, Forms forms, std::string what);
 Key optional(std::string name, Forms forms, std::string what, std::string otherwise = {});
+
+/// Marks a bound key that came after runs were made without it.
+Key later(Key key);
 
 /// The keys of a section with those that it shares with others, after them.
 std::vector<Key> with_keys(std::vector<Key> keys, std::vector<Key> shared);

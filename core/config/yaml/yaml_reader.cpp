@@ -307,48 +307,11 @@ std::vector<std::string> YamlMap::keys() const {
   return names;
 }
 
-void YamlMap::check_default(std::string_view key, const std::string& otherwise) const {
+YamlValue YamlMap::given_or_default(std::string_view key) {
   const Key* is = section_ ? section_->find(key) : nullptr;
-  if (is && is->otherwise != otherwise)
-    section_lacks("the default " + otherwise + " of " + section_->name + ": " + std::string(key));
-}
-
-void YamlMap::check_default(std::string_view key, double otherwise) const {
-  const Key* is = section_ ? section_->find(key) : nullptr;
-  if (!is) return;
-  const auto said = parse_real(is->otherwise);
-  // Angles are kept in radians, which changes their last digit.
-  const bool same = said && std::abs(*said - otherwise) <= 1e-12 * std::abs(otherwise);
-  if (!same) check_default(key, shortest_text(otherwise));
-}
-
-double YamlMap::number_or(std::string_view key, double otherwise) {
-  const auto value = find(key);
-  check_default(key, otherwise);
-  return value ? value->number() : otherwise;
-}
-
-double YamlMap::number_or(std::string_view key, double otherwise, Bounds bounds) {
-  const auto value = find(key);
-  return value ? value->number(bounds) : otherwise;
-}
-
-std::int64_t YamlMap::integer_or(std::string_view key, std::int64_t otherwise) {
-  const auto value = find(key);
-  check_default(key, std::to_string(otherwise));
-  return value ? value->integer() : otherwise;
-}
-
-std::string YamlMap::text_or(std::string_view key, std::string otherwise) {
-  const auto value = find(key);
-  check_default(key, otherwise);
-  return value ? value->text() : std::move(otherwise);
-}
-
-bool YamlMap::flag_or(std::string_view key, bool otherwise) {
-  const auto value = find(key);
-  check_default(key, otherwise ? "on" : "off");
-  return value ? value->flag() : otherwise;
+  if (!find(key) && is && !is->otherwise.empty())
+    return {YAML::Node(is->otherwise), value_.file_, child_path(key), &is->forms};
+  return require(key);
 }
 
 void YamlMap::done() const {

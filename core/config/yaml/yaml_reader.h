@@ -107,13 +107,12 @@ class YamlMap {
   /// has.
   void refuse(std::string_view key, const std::string& reason);
 
-  double number(std::string_view key) { return require(key).number(); }
+  // Of a key that is not given: the default that its section states, if it states one.
+  double number(std::string_view key) { return given_or_default(key).number(); }
   double number(std::string_view key, Bounds bounds) { return require(key).number(bounds); }
-  double number_or(std::string_view key, double otherwise);
-  double number_or(std::string_view key, double otherwise, Bounds bounds);
-  std::int64_t integer_or(std::string_view key, std::int64_t otherwise);
-  std::string text_or(std::string_view key, std::string otherwise);
-  bool flag_or(std::string_view key, bool otherwise);
+  std::int64_t integer(std::string_view key) { return given_or_default(key).integer(); }
+  std::string text(std::string_view key) { return given_or_default(key).text(); }
+  bool flag(std::string_view key) { return given_or_default(key).flag(); }
 
   const YamlValue& value() const { return value_; }
   /// Its section; it must have one.
@@ -123,9 +122,7 @@ class YamlMap {
  private:
   std::string child_path(std::string_view key) const;
   std::optional<YamlValue> look_up(std::string_view key, const Forms* forms);
-  /// Throws `std::logic_error` if the section states another default.
-  void check_default(std::string_view key, const std::string& otherwise) const;
-  void check_default(std::string_view key, double otherwise) const;
+  YamlValue given_or_default(std::string_view key);
 
   YamlValue value_;
   const Section* section_ = nullptr;

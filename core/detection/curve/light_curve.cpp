@@ -13,17 +13,6 @@
 namespace dmise {
 namespace {
 
-LightPeriod in_pixels(const FoundPeriod& found) {
-  LightPeriod out;
-  out.period_px = found.period_px;
-  out.period_sigma_px = found.sigma_px;
-  out.amplitude = found.amplitude;
-  out.amplitude_sigma = found.amplitude_sigma;
-  out.harmonics = found.harmonics;
-  out.false_alarm = found.false_alarm;
-  return out;
-}
-
 /// Adds the error of an end that was moved [px^2]: of length and middle.
 void add_end_error(Source& source, double variance_px2) {
   if (!(source.free & trail_length)) return;
@@ -93,7 +82,7 @@ std::optional<MeasuredCurve> light_curve_of(const Scene& scene, Source& source) 
   if (curve.along_px.empty()) return std::nullopt;
   curve.correlation.back() = 0.0;
   if (period) {
-    curve.period = in_pixels(*period);
+    curve.period = period->period;
     out.dark_first_px = period->dark_first_px;
     out.dark_last_px = period->dark_last_px;
   }

@@ -344,7 +344,7 @@ double dark_beyond(const Wave& wave, double even, double end_px, double side, do
 
 /// Sets the amplitude and its error, by how it changes with each coefficient.
 void set_amplitude(const Periodogram::Solution& fit, const Wave& wave, double misfit,
-                   FoundPeriod& out) {
+                   LightPeriod& out) {
   const auto [least, most] = wave.extremes();
   const double even = fit.value[even_light];
   out.amplitude = (wave.at_phase(most) - wave.at_phase(least)) / (2 * even);
@@ -369,7 +369,8 @@ std::optional<FoundPeriod> light_period(const StreakLight& light) {
   const Periodogram periodogram(light);
   const Candidate best = periodogram.best();
   if (best.harmonics == 0 || !(best.frequency > 0)) return std::nullopt;
-  FoundPeriod out;
+  FoundPeriod found;
+  LightPeriod& out = found.period;
   out.harmonics = std::uint32_t(best.harmonics);
   out.false_alarm = periodogram.false_alarm(best);
   if (out.false_alarm > most_false_alarm || !periodogram.beats_bend(best)) return std::nullopt;
@@ -378,14 +379,14 @@ std::optional<FoundPeriod> light_period(const StreakLight& light) {
   const Wave wave(std::span(fit->value).subspan(others), best.frequency);
   if (!repeats(wave, best, light.length_px)) return std::nullopt;
   out.period_px = 1 / best.frequency;
-  out.sigma_px = periodogram.sigma_of(best) * out.period_px * out.period_px;
-  if (!(out.sigma_px < 0.2 * out.period_px)) return std::nullopt;
+  out.period_sigma_px = periodogram.sigma_of(best) * out.period_px * out.period_px;
+  if (!(out.period_sigma_px < 0.2 * out.period_px)) return std::nullopt;
   set_amplitude(*fit, wave, light.misfit(), out);
   const double even = fit->value[even_light];
   const double half = light.length_px / 2;
-  out.dark_first_px = dark_beyond(wave, even, -half, -1, out.period_px);
-  out.dark_last_px = dark_beyond(wave, even, half, 1, out.period_px);
-  return out;
+  found.dark_first_px = dark_beyond(wave, even, -half, -1, out.period_px);
+  found.dark_last_px = dark_beyond(wave, even, half, 1, out.period_px);
+  return found;
 }
 
 }  // namespace dmise

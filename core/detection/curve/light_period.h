@@ -1,17 +1,14 @@
 #pragma once
-#include <cstdint>
 #include <optional>
 
 #include "core/detection/curve/streak_light.h"
+#include "core/products/light_curve.h"
 
 namespace dmise {
 
 /// A period of the light along a line.
 struct FoundPeriod {
-  double period_px = 0.0, sigma_px = 0.0;
-  double amplitude = 0.0, amplitude_sigma = 0.0;  // half of most less least, over the mean
-  std::uint32_t harmonics = 0;
-  double false_alarm = 0.0;
+  LightPeriod period;  // in pixels: when the object was where is not yet known
   // How far beyond either end the periodic light stays dark: so much of the line may be unseen.
   double dark_first_px = 0.0, dark_last_px = 0.0;
 };

@@ -42,25 +42,11 @@ DMISE_INLINE F32 poisson_large(F32 mean, U32 word) {
   const F32 root = sqrt(mean), y = 1.0f / root;
   const F32 w = normal_of_words(word);
   const F32 s = max(min(w * y, splat(1.3f)), splat(-1.3f));
-  F32 b = splat(-0.00015232487f);
-  b = b * s + 0.000229912266f;
-  b = b * s - 0.000199164306f;
-  b = b * s + 0.000518381453f;
-  b = b * s - 0.00134131721f;
-  b = b * s + 0.00370720588f;
-  b = b * s - 0.0138885284f;
-  b = b * s + 0.166666632f;
-  F32 c = splat(0.00107286438f);
-  c = c * s - 0.00147687628f;
-  c = c * s + 0.00135159052f;
-  c = c * s - 0.00335762945f;
-  c = c * s + 0.00867375154f;
-  c = c * s - 0.0277850070f;
-  c = c * s + 0.333332961f;
-  F32 d = splat(0.0179676131f);
-  d = d * s - 0.0145740379f;
-  d = d * s + 0.0164811869f;
-  d = d * s - 0.0197157343f;
+  F32 b = polynomial(s, -0.00015232487f, 0.000229912266f, -0.000199164306f, 0.000518381453f,
+                     -0.00134131721f, 0.00370720588f, -0.0138885284f, 0.166666632f);
+  F32 c = polynomial(s, 0.00107286438f, -0.00147687628f, 0.00135159052f, -0.00335762945f,
+                     0.00867375154f, -0.0277850070f, 0.333332961f);
+  F32 d = polynomial(s, 0.0179676131f, -0.0145740379f, 0.0164811869f, -0.0197157343f);
   const F32 beyond = root * w + (w * w * b + (c + d * (y * y)));
   // Split off the integer part to keep precision: from 2^23 on a float is an integer.
   const F32 whole = mean < 0x1p23f ? floor(min(mean, splat(0x1p23f))) : mean;

@@ -1673,6 +1673,12 @@ class Fusion(TypedDict, total=False):
     """Process noise of the filter [m^2/s^3]. Default: 1e-06."""
     pointing_sigma_arcsec: float
     """Error of a frame's directions that its detections do not know [arcsec]: jitter, bias, drift. Default: 0."""
+    confirm_catalogued: int
+    """Detections that confirm a track of a catalogued object. Default: 3."""
+    confirm_unknown: int
+    """Detections that confirm a track of an unknown object, which begins with four. Default: 6."""
+    confirm_arc: int
+    """Further detections that confirm a track that one site began. Default: 4."""
     cue_delay_ticks: int
     """Ticks between the decision for a task and its beginning. Default: 2."""
     not_in_catalogue: Sequence[Text]

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "core/base/units.h"
+#include "sensors/light/shape_layer.h"
 #include "sensors/objects/object_sampler.h"
-#include "sensors/objects/shape_layer.h"
 
 namespace dmise {
 

@@ -1,4 +1,4 @@
-#include "sensors/survey/rendered_check.h"
+#include "sensors/accuracy/rendered_check.h"
 
 #include <cmath>
 #include <map>

@@ -8,10 +8,10 @@
 #include "core/optics/blur/deposit.h"
 #include "core/sky/stars/star_map.h"
 #include "core/sky/variables/variable_stars.h"
-#include "sensors/light/star_path_grid.h"
 #include "sensors/scene/spectra.h"
 #include "sensors/scene/throughput.h"
 #include "sensors/scene/view.h"
+#include "sensors/sky/star_path_grid.h"
 
 namespace dmise {
 

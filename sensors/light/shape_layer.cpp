@@ -1,11 +1,11 @@
-#include "sensors/objects/shape_layer.h"
+#include "sensors/light/shape_layer.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
-#include "sensors/objects/shape_window.h"
+#include "sensors/light/shape_window.h"
 
 namespace dmise {
 namespace {

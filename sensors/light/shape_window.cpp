@@ -1,4 +1,4 @@
-#include "sensors/objects/shape_window.h"
+#include "sensors/light/shape_window.h"
 
 #include <algorithm>
 #include <cmath>

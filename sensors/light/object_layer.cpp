@@ -1,4 +1,4 @@
-#include "sensors/objects/object_layer.h"
+#include "sensors/light/object_layer.h"
 
 #include <algorithm>
 #include <map>
@@ -8,9 +8,9 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/blur/snapshots.h"
 #include "core/optics/projection.h"
+#include "sensors/light/row_window.h"
+#include "sensors/light/shape_exposure.h"
 #include "sensors/objects/object_sampler.h"
-#include "sensors/objects/row_window.h"
-#include "sensors/objects/shape_exposure.h"
 #include "sensors/render/resolution.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "sensors/light/thermal_optics.h"
+#include "sensors/sky/thermal_optics.h"
 
 #include "core/optics/projection.h"
 #include "core/photometry/planck.h"

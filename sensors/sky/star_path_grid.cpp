@@ -1,4 +1,4 @@
-#include "sensors/light/star_path_grid.h"
+#include "sensors/sky/star_path_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-#include "sensors/objects/shape_layer.h"
+#include "sensors/light/shape_layer.h"
 
 namespace dmise {
 

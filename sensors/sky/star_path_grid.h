@@ -8,8 +8,8 @@
 #include "core/base/pixel.h"
 #include "core/frames/vec.h"
 #include "core/sky/places/apparent.h"
-#include "sensors/light/star_path_kernels.h"
 #include "sensors/scene/view.h"
+#include "sensors/sky/star_path_kernels.h"
 
 namespace dmise {
 

@@ -1,4 +1,4 @@
-#include "sensors/light/star_path_kernels.h"
+#include "sensors/sky/star_path_kernels.h"
 
 #include "core/base/numeric/lanes.h"
 

@@ -1,4 +1,4 @@
-#include "sensors/objects/shape_exposure.h"
+#include "sensors/light/shape_exposure.h"
 
 #include <algorithm>
 #include <cmath>

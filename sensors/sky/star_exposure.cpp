@@ -1,4 +1,4 @@
-#include "sensors/light/star_exposure.h"
+#include "sensors/sky/star_exposure.h"
 
 #include <algorithm>
 

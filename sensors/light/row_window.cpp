@@ -1,4 +1,4 @@
-#include "sensors/objects/row_window.h"
+#include "sensors/light/row_window.h"
 
 #include <algorithm>
 #include <cmath>
