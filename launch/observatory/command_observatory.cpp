@@ -36,7 +36,7 @@ struct ObservatoryOptions {
   ObservatorySettings devices;
   double rate = 1.0;
   int discovery_port = alpaca_discovery_port;
-  bool no_discovery = false, force = false;
+  bool no_discovery = false, connected = false, force = false;
 };
 
 HostPort address_of(const std::string& option, const std::string& text) {
@@ -49,6 +49,7 @@ AlpacaServerOptions alpaca_options(const ObservatoryOptions& options) {
   const HostPort address = address_of("--listen", options.listen);
   AlpacaServerOptions server{.host = address.host, .location = options.scenario};
   server.port = std::uint16_t(address.port);
+  server.connected = options.connected;
   if (!options.tokens.empty()) server.tokens = read_access_tokens(options.tokens);
   server.discovery_port = options.no_discovery ? 0 : options.discovery_port;
   return server;
@@ -240,6 +241,9 @@ void add_observatory_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 65535));
   command->add_flag("--no-discovery", options->no_discovery, "clients must know the address");
+  command->add_flag("--connected", options->connected,
+                    "Alpaca's devices are connected from the beginning, for clients that take this "
+                    "for granted");
   auto* rate = add_number_option(*command, "--rate", options->rate, 0.01, 1000.0,
                                  "simulated seconds per second");
   auto* run = command->add_option("--run", options->run,

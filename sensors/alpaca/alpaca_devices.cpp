@@ -109,9 +109,10 @@ const std::vector<DeviceKind>& device_kinds() {
   return kinds;
 }
 
-AlpacaDevices::AlpacaDevices(Observatory& observatory)
+AlpacaDevices::AlpacaDevices(Observatory& observatory, bool connected)
     : observatory_(observatory),
-      sessions_(device_kinds().size(), std::vector<DeviceSession>(observatory.size())) {}
+      sessions_(device_kinds().size(),
+                std::vector<DeviceSession>(observatory.size(), DeviceSession{connected})) {}
 
 MemberAnswer AlpacaDevices::call(const DeviceCall& call, const AlpacaParameters& parameters) {
   const auto& kinds = device_kinds();

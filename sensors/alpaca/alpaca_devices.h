@@ -14,7 +14,7 @@ namespace dmise {
 /// What clients set of one device, beside what the device itself keeps.
 struct DeviceSession {
   bool connected = false;
-  std::optional<double> target_ra_h, target_dec_deg;  // of a telescope
+  std::optional<double> target_ra_h = {}, target_dec_deg = {};  // of a telescope
 };
 
 struct DeviceKind;
@@ -52,7 +52,7 @@ const std::vector<DeviceKind>& device_kinds();
 /// The devices of an observatory as the API has them: one of each kind at each station.
 class AlpacaDevices {
  public:
-  explicit AlpacaDevices(Observatory& observatory);
+  explicit AlpacaDevices(Observatory& observatory, bool connected = false);
 
   /// Calls a member. Throws `BadRequest` and `DeviceError`.
   MemberAnswer call(const DeviceCall& call, const AlpacaParameters& parameters);

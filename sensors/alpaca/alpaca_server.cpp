@@ -42,7 +42,7 @@ AlpacaServer::~AlpacaServer() = default;
 void AlpacaServer::serve(Observatory& observatory) {
   Work& work = *work_;
   work.hub.emplace(
-      AlpacaHub{work.options, work.connections, observatory, AlpacaDevices(observatory)});
+      AlpacaHub{work.options, work.connections, observatory, AlpacaDevices(observatory, work.options.connected)});
   work.listener.start(
       [&hub = *work.hub](tcp::socket socket) { serve_alpaca(hub, std::move(socket)); });
 }

@@ -13,6 +13,7 @@ struct AlpacaServerOptions {
   AccessTokens tokens = {};
   int discovery_port = 0;     // of UDP, where clients ask for servers; 0: none hears them
   std::string location = {};  // what the management API says of it
+  bool connected = false;     // devices are, before a client connects
 
   // Limits.
   std::size_t max_connections = 64;

@@ -84,6 +84,12 @@ TEST(AlpacaDevices, DoNotAnswerWhileTheirLinkIsLostAndTellAWrongGain) {
   EXPECT_EQ(bench.get("camera", "gains"), "[\"3.5 e-/DN\"]");
 }
 
+TEST(AlpacaDevices, MayBeConnectedFromTheBeginning) {
+  Bench bench("alpaca-connected-at-once");
+  AlpacaDevices devices(bench.observatory, true);
+  EXPECT_EQ(devices.call({.type = "focuser", .member = "ismoving"}, {}).value, "false");
+}
+
 TEST(AlpacaDevices, AnswerOnlyWhenConnected) {
   Bench bench("alpaca-connected");
   EXPECT_EQ(bench.get("camera", "connected"), "true");

@@ -89,7 +89,7 @@ def test(binary, work):
             program = subprocess.run(
                 [sys.executable, ROOT / "clients/python/examples/scheduler.py", master, observatory.address, str(IMAGES), str(EXPOSURE_S)],
                 stdout=subprocess.PIPE, text=True, timeout=150, check=False,
-                env={**os.environ, "PYTHONPATH": str(ROOT / "clients/python/src")})
+                env={**os.environ, "PYTHONPATH": str(ROOT / "build/python")})
             check(program.returncode == 0, f"the scheduler has its images: code {program.returncode}")
             check(len(journal(night)) == IMAGES, "they are in the journal")
             run.interrupt()
