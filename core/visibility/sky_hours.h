@@ -26,8 +26,9 @@ class SkyHours {
   struct Hour {
     SimTime start;
     EarthOrientation earth;
-    Vec<Gcrs> sun_m, sun_step_m;            // at its start, and from there to its end
-    Vec<Gcrs> moon_m, moon_step_m, bend_m;  // the same; by the share of the hour and its square
+    Vec<Gcrs> sun_m, sun_step_m;  // at its start, and from there to its end
+    Vec<Gcrs> moon_m, moon_step_m,
+        bend_m;  // as those of the Sun; by the share of the hour and its square
   };
   const Hour& hour(SimTime t) const;
 
