@@ -11,10 +11,10 @@ namespace dmise {
 /// Earth, Sun and Moon over a span of time, computed once an hour; the result depends on the
 /// instant alone. Precession and nutation are constant over the hour (4 mas at its ends), the Sun
 /// moves linearly (0.02 arcsec), the Moon along a parabola (10 m). Immutable.
-class SkyHours {
+class EphemerisTable {
  public:
   /// For instants in [from, to]; `ellipsoid` casts the shadow.
-  SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid = wgs84);
+  EphemerisTable(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid = wgs84);
 
   const Clock& clock() const { return clock_; }
   const EarthOrientation& earth(SimTime t) const { return hour(t).earth; }
@@ -43,7 +43,7 @@ inline constexpr double lit_fraction = 0.5;
 /// Sunlight at one instant, for states from SGP4.
 class Sunlight {
  public:
-  Sunlight(const SkyHours& sky, SimTime t);
+  Sunlight(const EphemerisTable& sky, SimTime t);
 
   /// Fraction of the Sun's disc visible past the oblate Earth, 0..1; 0 inside the Earth.
   double fraction(const Vec<Teme>& position_m) const;
