@@ -24,9 +24,9 @@ namespace {
 constexpr double day_s = 86400.0, grid_s = 30.0;
 constexpr double albedo = 0.3;
 constexpr double found_within_s = 12 * 3600.0;
-constexpr double least_m_per_s = 0.02;         // of manoeuvres that are to be found
-constexpr double least_normal_m_per_s = 0.15;  // that element sets of three days show
-constexpr double same_s = 3 * 3600.0;          // of a manoeuvre that is found, from its time
+constexpr double min_m_per_s = 0.02;         // of manoeuvres that are to be found
+constexpr double min_normal_m_per_s = 0.15;  // that element sets of three days show
+constexpr double same_s = 3 * 3600.0;        // of a manoeuvre that is found, from its time
 
 /// A satellite whose days from `start` have a precise orbit.
 struct Days {
@@ -236,8 +236,8 @@ void bench_manoeuvres(const Subject& s, const std::string& data, const Printer& 
   FoundFigures f;
   int number = 0;
   for (LoggedManoeuvre m : logged_manoeuvres(data, s.of.logged)) {
-    if (std::fabs(m.normal_m_per_s) < least_normal_m_per_s) m.normal_m_per_s = 0;
-    if (std::hypot(m.transverse_m_per_s, m.normal_m_per_s) < least_m_per_s) continue;
+    if (std::fabs(m.normal_m_per_s) < min_normal_m_per_s) m.normal_m_per_s = 0;
+    if (std::hypot(m.transverse_m_per_s, m.normal_m_per_s) < min_m_per_s) continue;
     fly_manoeuvre(s, m, number++, f);
   }
   print("_manoeuvres", f.logged, "1");

@@ -96,7 +96,7 @@ int bench_detect(bool json) {
 
   double points = -1e9, streaks = -1e9;
   for (const double length : {0.0, 5.0, 20.0, 100.0, 300.0, 1000.0}) {
-    const double threshold = length > 0 ? least_streak_snr(length) : detection_limits::least_snr;
+    const double threshold = length > 0 ? min_streak_snr(length) : detection_limits::min_snr;
     double worst = -1e9;
     for (const StarField& field : fields)
       worst = std::max(worst, late_by_snr(length, threshold,

@@ -34,7 +34,7 @@ void bench_tick(bool json) {
   settings.half_angle_rad = 80 * deg;
   settings.sigma_rad = 5 * arcsec;
   settings.limiting_magnitude = 20;
-  settings.most_per_frame = 29;
+  settings.max_per_frame = 29;
   settings.false_alarms_per_frame = 1;
   FusionTrial trial(catalogue(), clock, settings);
   Fusion fusion(catalogue(), clock, {}, {});

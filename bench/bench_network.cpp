@@ -26,7 +26,7 @@ struct Options {
 };
 Options options;
 
-constexpr int most_tries = 5;
+constexpr int max_tries = 5;
 constexpr int pilot_sensors = 8, pilot_frames = 3;
 constexpr double share_at_first = 0.96;  // of the processors' time, for the first try
 constexpr double share_detecting = 0.9;
@@ -68,7 +68,7 @@ struct Kept {
 Kept keep_up(NetworkCase network, double share, const std::filesystem::path& directory) {
   const double by = network.detect ? step_detecting : step;
   Kept kept;
-  for (int tried = 0; tried < most_tries && network.sensors > 0; ++tried) {
+  for (int tried = 0; tried < max_tries && network.sensors > 0; ++tried) {
     kept.run = measure(network, directory);
     if (kept.run.overruns == 0) {
       kept.sensors = network.sensors;

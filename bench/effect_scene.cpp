@@ -192,10 +192,10 @@ std::string draw_object(Frame& f, const View& view, int index) {
   double wanted_px = centred            ? f.trail_px
                      : dice.chance(0.2) ? 0.0
                                         : dice.uniform(0.0, longest_trail_px);
-  const double least_m = f.on_ground ? 2e5 : 1e3, most_m = f.on_ground ? 4e7 : 4e6;
-  double range_m = dice.log_uniform(least_m, most_m);
+  const double min_m = f.on_ground ? 2e5 : 1e3, max_m = f.on_ground ? 4e7 : 4e6;
+  double range_m = dice.log_uniform(min_m, max_m);
   if (shaped)
-    range_m = std::clamp(dice.uniform(1.0, 60.0) / (size_px * f.camera.pixel_rad), 200.0, most_m);
+    range_m = std::clamp(dice.uniform(1.0, 60.0) / (size_px * f.camera.pixel_rad), 200.0, max_m);
   const double turn = dice.uniform(0.0, 2.0 * pi), centre = 0.5 * (side_px - 1.0);
   const PixelPosition middle{centred ? centre : dice.uniform(20.0, side_px - 20.0),
                              centred ? centre : dice.uniform(20.0, side_px - 20.0)};
@@ -224,9 +224,9 @@ std::string draw_object(Frame& f, const View& view, int index) {
     start_m = position_m[1] - velocity * f.middle_s();
   };
   const auto is_free = [&] {
-    constexpr double least_height_m = 100.0;
+    constexpr double min_height_m = 100.0;
     const auto above = [](const Vec<Gcrs>& position_m) {
-      return norm(OblateEarth{}.stretched(position_m)) > wgs84.equatorial_radius_m + least_height_m;
+      return norm(OblateEarth{}.stretched(position_m)) > wgs84.equatorial_radius_m + min_height_m;
     };
     return above(start_m) && above(start_m + velocity * f.duration_s);
   };

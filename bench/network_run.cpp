@@ -168,7 +168,7 @@ NetworkRun run_network(const NetworkCase& network, const fs::path& directory) {
   for (const ProcessUse& member : family.members()) {
     if (!is_sensor(member)) continue;
     run.sensor_pss_mb = std::max(run.sensor_pss_mb, member.peak_pss_mb);
-    run.sensor_most_mb = std::max(run.sensor_most_mb, member.most_pss_mb);
+    run.sensor_most_mb = std::max(run.sensor_most_mb, member.max_pss_mb);
   }
   fs::remove_all(out);
   return run;

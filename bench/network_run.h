@@ -31,7 +31,7 @@ struct NetworkRun {
   int frames = 0;                          // by all sensors
   double peak_pss_mb = 0.0;                // largest observed sum over all processes
   double sensor_pss_mb = 0.0;              // largest observed of one sensor
-  double sensor_most_mb = 0.0;             // upper bound (`ProcessUse::most_pss_mb`)
+  double sensor_most_mb = 0.0;             // upper bound (`ProcessUse::max_pss_mb`)
 
   double cpu_s_per_frame() const { return frames > 0 ? cpu_s / frames : 0.0; }
 };

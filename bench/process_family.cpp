@@ -72,7 +72,7 @@ void look_at(pid_t pid, ProcessUse& use) {
   use.peak_pss_mb = std::max(use.peak_pss_mb, use.pss_mb);
   if (use.pss_mb == 0.0) return;  // it has just ended
   const double shared_mb = megabytes(memory, "Rss") - use.pss_mb;
-  use.most_pss_mb =
+  use.max_pss_mb =
       std::max(use.peak_pss_mb, megabytes(read_proc(pid, "status"), "VmHWM") - shared_mb);
 }
 

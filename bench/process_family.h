@@ -12,7 +12,7 @@ struct ProcessUse {
   std::string name;          // its `--name`, or its program
   double pss_mb = 0.0;       // proportional set size [10^6 bytes]
   double peak_pss_mb = 0.0;  // largest observed
-  double most_pss_mb = 0.0;  // upper bound: the peak of its resident set minus
+  double max_pss_mb = 0.0;   // upper bound: the peak of its resident set minus
                              // currently shared memory
   double cpu_s = 0.0;        // of all threads
 };

@@ -9,10 +9,10 @@ namespace {
 using std::chrono::milliseconds;
 
 // Length of a pass, after which the clock is checked.
-constexpr int most_messages = 2000;
-constexpr int most_strangers = 64;
-constexpr milliseconds most_time{5};
-constexpr milliseconds most_time_of_strangers{2};
+constexpr int max_messages = 2000;
+constexpr int max_strangers = 64;
+constexpr milliseconds max_time{5};
+constexpr milliseconds max_time_of_strangers{2};
 constexpr int looks_at_time = 16;  // messages between two checks of the time
 // A Join with 4,000 topics of usual length; the clock's own messages may be longer.
 constexpr std::size_t longest_of_a_stranger = 256 << 10;
@@ -35,9 +35,9 @@ bool ControlInbox::receive(ControlMessage* message) {
 }
 
 bool ControlInbox::read(const Take& take) {
-  const auto until = now() + most_time;
+  const auto until = now() + max_time;
   ControlMessage message;
-  for (int count = 1; count <= most_messages; ++count) {
+  for (int count = 1; count <= max_messages; ++count) {
     if (!receive(&message)) return true;
     if (!take(message)) {
       const std::size_t bytes = message.body.size();
@@ -59,8 +59,8 @@ std::optional<std::chrono::nanoseconds> ControlInbox::next_due() {
 
 void ControlInbox::deliver_strangers(const std::function<void(ControlMessage&)>& hear) {
   if (strangers_.size() == 0) return;
-  const auto until = now() + most_time_of_strangers;
-  for (int count = 0; count < most_strangers && now() < until; ++count) {
+  const auto until = now() + max_time_of_strangers;
+  for (int count = 0; count < max_strangers && now() < until; ++count) {
     auto message = strangers_.take(now());
     if (!message) return;
     hear(*message);

@@ -29,11 +29,11 @@ milliseconds connecting_interval(std::size_t nodes) { return milliseconds(10 + n
 
 constexpr milliseconds farewell{1500};  // longest wait for nodes to leave after the run
 
-constexpr milliseconds longest_unheard{250};   // between a connection's end and its last messages
-constexpr milliseconds guard_interval{20};     // between checks of connection limits
-constexpr int most_control_messages = 1000;    // of one connection, waiting to be read
-constexpr int most_waiting_subscriptions = 8;  // of one connection; others wait at the peer, so
-                                               // that little is queued between two checks
+constexpr milliseconds longest_unheard{250};  // between a connection's end and its last messages
+constexpr milliseconds guard_interval{20};    // between checks of connection limits
+constexpr int max_control_messages = 1000;    // of one connection, waiting to be read
+constexpr int max_waiting_subscriptions = 8;  // of one connection; others wait at the peer, so
+                                              // that little is queued between two checks
 
 CoordinatorOptions with_broker(const MasterOptions& options) {
   CoordinatorOptions run = options.run;
@@ -47,15 +47,15 @@ CoordinatorOptions with_broker(const MasterOptions& options) {
 /// Subscribers of the clock send subscriptions only.
 ConnectionLimits limits_of_listeners(std::size_t nodes) {
   ConnectionLimits limits = limits_for(nodes, 0.4);
-  limits.most_strangers += nodes;
-  limits.usual_strangers = limits.most_strangers;
+  limits.max_strangers += nodes;
+  limits.usual_strangers = limits.max_strangers;
   limits.stranger_bytes = 0;
   return limits;
 }
 
 zmq::socket_t control_router(zmq::context_t& context) {
   zmq::socket_t router = make_socket(context, zmq::socket_type::router, max_control_bytes);
-  router.set(zmq::sockopt::rcvhwm, most_control_messages);
+  router.set(zmq::sockopt::rcvhwm, max_control_messages);
   router.set(zmq::sockopt::linger, 500);
   return router;
 }
@@ -63,7 +63,7 @@ zmq::socket_t control_router(zmq::context_t& context) {
 zmq::socket_t grant_publisher(zmq::context_t& context) {
   zmq::socket_t ticks = make_socket(context, zmq::socket_type::pub, max_control_bytes);
   ticks.set(zmq::sockopt::sndhwm, max_unread);  // heartbeats repeat lost grants
-  ticks.set(zmq::sockopt::rcvhwm, most_waiting_subscriptions);
+  ticks.set(zmq::sockopt::rcvhwm, max_waiting_subscriptions);
   ticks.set(zmq::sockopt::linger, 500);
   return ticks;
 }

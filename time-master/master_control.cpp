@@ -15,8 +15,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t max_unasked_bytes = 4096;        // of a guest's messages
-constexpr std::size_t most_observed_bytes = 64 << 10;  // of the topics of one observer
+constexpr std::size_t max_unasked_bytes = 4096;       // of a guest's messages
+constexpr std::size_t max_observed_bytes = 64 << 10;  // of the topics of one observer
 
 }  // namespace
 
@@ -130,7 +130,7 @@ void MasterProcess::join(std::string_view sender, zmq::message_t& frame) {
     refusal = "only " + join.host() + " speaks for the nodes of its host";
   else if (join.host().empty() && !stands_for.empty() && stands_for != join.name())
     refusal = "this connection is that of " + stands_for;
-  else if (join.observer() && join.ByteSizeLong() > most_observed_bytes)
+  else if (join.observer() && join.ByteSizeLong() > max_observed_bytes)
     refusal = "an observer's topics may have 64 KiB in all";
   else if (has_joined(join, stands_for))
     return publisher_.reply(sender,

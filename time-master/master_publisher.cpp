@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 /// Manifests go only to a topic's consumers if there are at least so many processes for each.
-constexpr std::size_t least_crowd = 8;
+constexpr std::size_t min_crowd = 8;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void MasterPublisher::index_consumers() {
     }
   }
   for (const auto& [topic, names] : consumers)
-    if (names.size() * least_crowd <= connected && !observed.contains(topic))
+    if (names.size() * min_crowd <= connected && !observed.contains(topic))
       narrow_[topic].assign(names.begin(), names.end());
 }
 

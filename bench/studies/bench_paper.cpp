@@ -32,7 +32,7 @@ void add_paper_options(CLI::App& app) {
 }
 
 int bench_paper(bool json) {
-  constexpr double most_bias_sigma = 2.0, most_sequence_s = 30.0;
+  constexpr double max_bias_sigma = 2.0, max_sequence_s = 30.0;
   Threads threads(2);
   bool good = true;
   for (const SeedStudy& s : study_seeds(options.seeds, {}, Exposed::window, threads)) {
@@ -41,7 +41,7 @@ int bench_paper(bool json) {
     print_figure({.name = name + "bias_sigma",
                   .value = s.bias_sigma(),
                   .unit = "standard errors",
-                  .target = most_bias_sigma,
+                  .target = max_bias_sigma,
                   .less_is_better = true},
                  json);
     print_figure({.name = name + "ratio",
@@ -64,7 +64,7 @@ int bench_paper(bool json) {
                  json);
     print_figure({.name = name + "z_width", .value = s.z_width, .unit = "1"}, json);
     print_figure({.name = name + "snr_r", .value = s.snr_r, .unit = "1"}, json);
-    good = good && s.bias_sigma() <= most_bias_sigma &&
+    good = good && s.bias_sigma() <= max_bias_sigma &&
            std::abs(s.scatter / s.theory - 1.0) <= 0.2 && s.z_width >= 0.9 && s.z_width <= 1.1;
   }
   for (const SeedStudy& s : study_seeds(options.many_seeds, {}, Exposed::pieces, threads)) {
@@ -80,7 +80,7 @@ int bench_paper(bool json) {
                   .value = percent * (s.without_noise - s.truth),
                   .unit = "%"},
                  json);
-    good = good && s.bias_sigma() <= most_bias_sigma;
+    good = good && s.bias_sigma() <= max_bias_sigma;
   }
   if (!options.no_night) bench_survey_night(json);
   if (options.no_sequence) return good ? 0 : 1;
@@ -91,10 +91,10 @@ int bench_paper(bool json) {
                 .unit = "s",
                 .anchor = "processor time of both threads [s]",
                 .anchor_value = process_seconds() - before_s,
-                .target = most_sequence_s,
+                .target = max_sequence_s,
                 .less_is_better = true},
                json);
-  return good && wall_s <= most_sequence_s ? 0 : 1;
+  return good && wall_s <= max_sequence_s ? 0 : 1;
 }
 
 }  // namespace dmise

@@ -32,7 +32,7 @@ namespace dmise {
 namespace {
 
 constexpr int window_ticks = 4;
-constexpr int most_sensors = 200;
+constexpr int max_sensors = 200;
 constexpr std::size_t catalogue_objects = 18470;
 constexpr double paced_ticks_per_s = 4.0;    // mostly the cost of heartbeats
 constexpr double target_ticks_per_s = 25.0;  // of the most sensors, with 18,470 objects
@@ -261,7 +261,7 @@ int bench_scaling(bool json) {
       const Tick ticks = warm_up + std::max(200, 2000 / sensors);
       const Scenario scenario = telescope_network(sensors, ticks - 1, directory);
       const double found = run("fields", sensors, telescopes(scenario, ticks));
-      if (sensors == most_sensors)
+      if (sensors == max_sensors)
         print_figure({"states_" + std::to_string(sensors) + "_ticks_per_s", found, "1/s",
                       "empty states [1/s]", empty_ticks_per_s, target_ticks_per_s},
                      json);

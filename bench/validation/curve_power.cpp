@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr double step_s = 0.1, widest_gap_s = 1.05, least_length_s = 16.0;
+constexpr double step_s = 0.1, widest_gap_s = 1.05, min_length_s = 16.0;
 constexpr double fastest_hz = 0.5, white_above_hz = 1.0;
 constexpr std::array<double, 6> edges_s{2, 4, 8, 16, 32, 64};
 constexpr double part_of_band = 1.2;  // of a band's shortest period, that a track must last
@@ -65,11 +65,11 @@ Periodogram periodogram(const std::vector<double>& y, double up_to_hz) {
 }
 
 /// Mean density over [least, most) less the white level; nothing without a frequency there.
-double mean_density(const Periodogram& p, double least_hz, double most_hz, double white) {
+double mean_density(const Periodogram& p, double min_hz, double max_hz, double white) {
   double sum = 0.0;
   int count = 0;
   for (std::size_t k = 0; k < p.density.size(); ++k)
-    if (p.at_hz(k) >= least_hz && p.at_hz(k) < most_hz) {
+    if (p.at_hz(k) >= min_hz && p.at_hz(k) < max_hz) {
       sum += p.density[k] - white;
       ++count;
     }
@@ -119,11 +119,11 @@ std::vector<double> band_powers(const Periodogram& p, double white, double secon
   std::vector<double> powers;
   const double slowest_hz = 0.999 / seconds;
   for (std::size_t b = 0; b + 1 < edges_s.size(); ++b) {
-    const double least_hz = 1.0 / edges_s[b + 1], most_hz = 1.0 / edges_s[b];
+    const double min_hz = 1.0 / edges_s[b + 1], max_hz = 1.0 / edges_s[b];
     powers.push_back(seconds < part_of_band * edges_s[b]
                          ? std::numeric_limits<double>::quiet_NaN()
-                         : (most_hz - least_hz) *
-                               mean_density(p, std::max(least_hz, slowest_hz), most_hz, white));
+                         : (max_hz - min_hz) *
+                               mean_density(p, std::max(min_hz, slowest_hz), max_hz, white));
   }
   double all = 0.0;
   for (std::size_t k = 0; k < p.density.size(); ++k)
@@ -177,7 +177,7 @@ CurvePower curve_power(std::span<const PassLightCurve> curves) {
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const PassLightCurve& curve = curves[c];
     const SteadyRun run = longest_run(curve.time_s);
-    if (run.seconds() < least_length_s) continue;
+    if (run.seconds() < min_length_s) continue;
     const Periodogram p = periodogram(at_steps(run, curve.time_s, curve.measured_mag), 1e9);
     const double white = mean_density(p, white_above_hz, 1e9, 0.0);
     whites.push_back(std::sqrt(white / (2.0 * step_s)));

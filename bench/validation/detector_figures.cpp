@@ -72,10 +72,10 @@ void add_truth(const ScoredTruth& t, double expected, SnrRow& row) {
   if (t.fate == Fate::found) add_errors(t, row);
 }
 
-constexpr double least_charted_snr = 3.0, most_charted_snr = 100.0;
+constexpr double min_charted_snr = 3.0, max_charted_snr = 100.0;
 
 bool is_charted(const Bin& bin) {
-  return bin.from && bin.to && *bin.from >= least_charted_snr && *bin.to <= most_charted_snr;
+  return bin.from && bin.to && *bin.from >= min_charted_snr && *bin.to <= max_charted_snr;
 }
 
 bool is_in(const Bin& bin, double snr) {
@@ -247,10 +247,10 @@ Chart completeness_chart(const std::vector<DetectorFigures>& sensors, const std:
           kind == streak_sensor ? "Streaks among round stars" : "Points among stars that trail",
       .subtitle = "share that is found, and the mean probability that dmise survey expects",
       .x = {.label = "SNR of the ideal matched filter",
-            .least = least_charted_snr,
-            .most = most_charted_snr,
+            .least = min_charted_snr,
+            .most = max_charted_snr,
             .logarithmic = true,
-            .ticks = logarithmic_ticks(least_charted_snr, most_charted_snr)},
+            .ticks = logarithmic_ticks(min_charted_snr, max_charted_snr)},
       .y = {.label = "completeness",
             .ticks = {{0.0, "0"}, {0.25, "0.25"}, {0.5, "0.5"}, {0.75, "0.75"}, {1.0, "1"}}}};
   for (const DetectorFigures& f : sensors) {

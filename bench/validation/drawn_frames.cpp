@@ -24,7 +24,7 @@ namespace {
 
 constexpr int side = 4;  // objects along an edge of the frame
 constexpr double jitter_px = 60.0;
-constexpr double least_snr = 3.0, most_snr = 100.0;
+constexpr double min_snr = 3.0, max_snr = 100.0;
 constexpr double near_m = 800e3, far_m = 4000e3;  // of streaks
 constexpr double geo_range_m = 37500e3;
 constexpr double earth_rate_rad_per_s = 7.292115e-5;
@@ -98,7 +98,7 @@ OwnObject object_in(const View& view, const Clock& clock, std::uint32_t k, std::
   const Vec<Gcrs> line = view.camera_from_gcrs(middle).inverse() * *unproject(optics, pixel);
   const double range_m = streak ? dice.log_uniform(near_m, far_m) : geo_range_m;
   const Vec<Gcrs> position_m = view.observer(middle).position_m + line * range_m;
-  placed.snr = dice.log_uniform(least_snr, most_snr);
+  placed.snr = dice.log_uniform(min_snr, max_snr);
   OwnObject object;
   object.name = formatted("%s-%u-%u", view.sensor().name.c_str(), view.times().frame, k);
   object.where = object.name;

@@ -26,7 +26,7 @@ namespace {
 constexpr Site mount_lemmon{.latitude_deg = 32.4434, .longitude_deg = -110.7881, .height_m = 2790};
 constexpr Site mmt_9{.latitude_deg = 43.65, .longitude_deg = 41.43, .height_m = 2030};
 constexpr std::size_t points_of_fit = 15;
-constexpr double least_km = 100.0, most_km = 1e5;  // of heights and ranges
+constexpr double min_km = 100.0, max_km = 1e5;  // of heights and ranges
 constexpr double brightest_mag = -10.0, faintest_mag = 25.0;
 
 /// Rows of a CSV with a header; lines that begin with # are comments.
@@ -163,7 +163,7 @@ ObservedSet read_exposures(const std::string& path) {
   for (const auto& [t, i] : rows) {
     const EarthOrientation earth = earth_orientation(clock, t, Nutation::iau2000b);
     const auto gcrs_from_itrs = earth.itrs_from_gcrs(t).inverse();
-    const double height_m = 1e3 * table.number(i, "satellite_height", least_km, most_km);
+    const double height_m = 1e3 * table.number(i, "satellite_height", min_km, max_km);
     const double elevation_rad = deg * table.number(i, "satellite_altitude", 0.0, 90.0);
     const double azimuth_rad = deg * table.number(i, "satellite_azimuth", -360.0, 360.0);
     const Vec<Itrs> line = itrs_from_enu * Vec<Enu>{std::sin(azimuth_rad) * std::cos(elevation_rad),
@@ -203,7 +203,7 @@ ObservedSet read_light_curves(const std::string& path, double inclination_rad, d
     curves[table.text(i, "Track")].push_back(
         {.time = clock.sim_time(table.time(i, "Date")),
          .mag = table.number(i, "Mag", brightest_mag, faintest_mag),
-         .range_m = 1e3 * table.number(i, "Distance", least_km, most_km),
+         .range_m = 1e3 * table.number(i, "Distance", min_km, max_km),
          .phase_rad = deg * table.number(i, "Phase", 0.0, 180.0),
          .penumbra = table.number(i, "Penumbra", 0.0, 1.0) != 0.0,
          .object = table.has("MMTSat") ? std::uint32_t(table.number(i, "MMTSat", 0.0, 1e9)) : 0u});

@@ -98,7 +98,7 @@ PredictedFrame predicted(Scenario scenario, double fwhm_px, Threads& threads) {
   const Clock clock = make_clock(scenario);
   const ObjectPopulation none;
   const SensorOutlook outlook =
-      sensor_outlook(scenario, sensor, none, clock, nullptr, threads, {.most_frames = 0});
+      sensor_outlook(scenario, sensor, none, clock, nullptr, threads, {.max_frames = 0});
   const FrameOutlook& middle = *outlook.mid_run;
   const FrameTimes times = frame_times(sensor, middle.frame);
   const WorldSource worlds(scenario, sensor, clock);

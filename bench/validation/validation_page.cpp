@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 constexpr double phase_bin_deg = 5.0, widest_mag = 2.5;
-constexpr std::size_t most_points = 500, least_in_bin = 10;
+constexpr std::size_t max_points = 500, least_in_bin = 10;
 constexpr Colour grey{190, 190, 190}, blue{31, 119, 180}, orange{255, 127, 14};
 
 constexpr const char* introduction = R"(# Validation
@@ -124,14 +124,14 @@ Chart difference_chart(const FamilyBrightness& family) {
   std::map<int, std::vector<double>> bins;
   std::size_t held_out = 0;
   for (const auto& light : family.lights) held_out += light.held_out;
-  const std::size_t every = std::max<std::size_t>(1, held_out / most_points);
+  const std::size_t every = std::max<std::size_t>(1, held_out / max_points);
   std::size_t k = 0;
-  double least_deg = 180.0, most_deg = 0.0;
+  double min_deg = 180.0, max_deg = 0.0;
   for (const auto& light : family.lights) {
     if (!light.held_out) continue;
     const double phase_deg = light.phase_rad / deg;
-    least_deg = std::min(least_deg, phase_deg);
-    most_deg = std::max(most_deg, phase_deg);
+    min_deg = std::min(min_deg, phase_deg);
+    max_deg = std::max(max_deg, phase_deg);
     bins[int(std::floor(phase_deg / phase_bin_deg))].push_back(light.difference_mag());
     if (k++ % every == 0 && std::abs(light.difference_mag()) < widest_mag)
       points.lines.push_back(
@@ -146,8 +146,8 @@ Chart difference_chart(const FamilyBrightness& family) {
     bounds.lines[0].push_back({at, quantile_of(values, 0.16)});
     bounds.lines[1].push_back({at, quantile_of(values, 0.84)});
   }
-  chart.x = axis("Sun-satellite-observer, deg", std::floor(least_deg / 10) * 10,
-                 std::ceil(most_deg / 10) * 10, 20.0);
+  chart.x = axis("Sun-satellite-observer, deg", std::floor(min_deg / 10) * 10,
+                 std::ceil(max_deg / 10) * 10, 20.0);
   chart.y = axis("measured - predicted, mag", -widest_mag, widest_mag, 0.5);
   chart.series = {std::move(points), std::move(bounds), std::move(middle)};
   return chart;

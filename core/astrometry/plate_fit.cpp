@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr int most_steps = 12, most_passes = 12;
+constexpr int max_steps = 12, max_passes = 12;
 constexpr int soft_passes = 4;  // with Huber's weights, if there are outliers
 constexpr double huber = 1.5;
 /// Terms of order 3 whose sum, with one coefficient, is radial.
@@ -87,8 +87,8 @@ class Equations {
 };
 
 /// Inverse of a match's covariance.
-std::array<double, 3> weight_of(const PlateMatch& m, double least_sigma_px) {
-  const double more = least_sigma_px * least_sigma_px + 1e-12;
+std::array<double, 3> weight_of(const PlateMatch& m, double min_sigma_px) {
+  const double more = min_sigma_px * min_sigma_px + 1e-12;
   const double xx = m.covariance_px2[0] + more, xy = m.covariance_px2[1],
                yy = m.covariance_px2[2] + more, det = xx * yy - xy * xy;
   return {yy / det, -xy / det, xx / det};
@@ -122,13 +122,13 @@ std::optional<PlateFit> fit_plate(const PlateModel& model, std::span<const Plate
   }
   std::vector<std::array<double, 3>> weight;
   for (std::size_t k = 0; k < matches.size(); ++k) {
-    weight.push_back(weight_of(matches[k], settings.least_sigma_px));
+    weight.push_back(weight_of(matches[k], settings.min_sigma_px));
     fit.used[k] = !matches[k].ignored;
   }
   std::vector<double> squares(matches.size()), soft(matches.size(), 1.0);
   Row row;
-  for (int pass = 0; pass < most_passes; ++pass) {
-    for (int step = 0; step < most_steps; ++step) {
+  for (int pass = 0; pass < max_passes; ++pass) {
+    for (int step = 0; step < max_steps; ++step) {
       Equations equations(fit.model, free);
       std::vector<double> normal(side * side, 0.0), right(side, 0.0), by(side, 0.0);
       fit.count = 0;

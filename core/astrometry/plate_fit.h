@@ -47,7 +47,7 @@ struct PlateFit {
 };
 
 struct PlateFitSettings {
-  double least_sigma_px = 0.0;  // error of the stars' places, added to the matches'
+  double min_sigma_px = 0.0;    // error of the stars' places, added to the matches'
   double outlier_sigmas = 4.5;  // in the plane
 };
 

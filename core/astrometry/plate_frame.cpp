@@ -11,8 +11,8 @@ constexpr std::size_t growing_sources = 300;
 /// Saturated stars take part in a fit only if there are fewer others.
 constexpr std::size_t least_exact = 10;
 /// Measurements a parameter from which on it may be chosen, and be heard as a rival.
-constexpr double least_measured = 5.0, least_of_rivals = 1.5;
-constexpr double least_weight = 0.01;  // of a rival
+constexpr double min_measured = 5.0, least_of_rivals = 1.5;
+constexpr double min_weight = 0.01;  // of a rival
 /// Distortion of a lens of which nothing is known, at the corner, relative to the way there.
 constexpr double unknown_distortion = 0.003;
 /// The rest of the distortion of a lens, over its radial term of third order.
@@ -51,7 +51,7 @@ PlateFrame::PlateFrame(std::span<const PlateSource> sources, const PlateHint& hi
     return std::int64_t(std::lround(y)) * (std::int64_t(1) << 32) + std::lround(x);
   };
   for (const std::uint32_t i : original_) {
-    if (sources_.size() >= 4 * search.most_stars) break;
+    if (sources_.size() >= 4 * search.max_stars) break;
     const PlateSource& s = sources[i];
     bool twice = false;
     for (int j = -1; j <= 1 && !twice; ++j)
@@ -89,7 +89,7 @@ bool PlateFrame::stars_beside(const PlateModel& model, std::span<const std::uint
   const Vec<Gcrs> here = sky_.direction(pattern[0]);
   const double size_rad = angle_rad(here, sky_.direction(pattern[1]));
   const MatchReach reach{
-      .from = from, .near_px = 1.5, .known_px = 0.0, .growth = 0.02, .most_px = 3 * size_px};
+      .from = from, .near_px = 1.5, .known_px = 0.0, .growth = 0.02, .max_px = 3 * size_px};
   double odds = 0.0;
   int tested = 0;
   for (const SeenStar& star : sky_.brightest(here, 2.2 * size_rad, 24)) {
@@ -121,8 +121,8 @@ std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPositio
                               .near_px = std::max(1.5, 3 * rms_px),
                               .known_px = known_px,
                               .growth = 0.02,
-                              .most_px = radius_px});
-    const PlateFitSettings settings{.least_sigma_px = std::max(0.3, star_sigma_px(model))};
+                              .max_px = radius_px});
+    const PlateFitSettings settings{.min_sigma_px = std::max(0.3, star_sigma_px(model))};
     auto fit = fit_plate(model, pairs, {.focal_length = pairs.size() > 2}, settings);
     if (!fit || fit->count < 3) return std::nullopt;
     // The lens is not quite what is believed.
@@ -145,7 +145,7 @@ std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPositio
 std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
                                              std::span<const PlateMatch> pairs,
                                              PlateSolution& solution) const {
-  const PlateFitSettings settings{.least_sigma_px = star_sigma_px(model)};
+  const PlateFitSettings settings{.min_sigma_px = star_sigma_px(model)};
   struct Candidate {
     PlateFit fit;
     double score;
@@ -158,7 +158,7 @@ std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
   std::vector<PlateFreedom> freedoms{{.focal_length = true},
                                      {.focal_length = true, .centre = true},
                                      {.focal_length = true, .radial = true}};
-  for (int order = 1; order <= search_.most_order; ++order)
+  for (int order = 1; order <= search_.max_order; ++order)
     freedoms.push_back({.focal_length = true, .order = order});
   const double unknown_px = unknown_distortion * half_diagonal_px();
   solution.left_out_px = unknown_px;
@@ -178,14 +178,14 @@ std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
                          free.size() * std::log(measured);
     candidates.push_back({*fit, score});
     // Outliers do not determine parameters.
-    const bool determined = free.size() <= 4 || 2.0 * fit->count >= least_measured * free.size();
+    const bool determined = free.size() <= 4 || 2.0 * fit->count >= min_measured * free.size();
     if (determined && (!best || score < candidates[*best].score)) best = candidates.size() - 1;
   }
   solution.rivals.clear();
   if (!best) return std::nullopt;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const double weight = std::exp(0.5 * (candidates[*best].score - candidates[i].score));
-    if (i != *best && weight >= least_weight)
+    if (i != *best && weight >= min_weight)
       solution.rivals.push_back({std::move(candidates[i].fit), std::min(weight, 1.0)});
   }
   const PlateFit& chosen = candidates[*best].fit;
@@ -218,7 +218,7 @@ double PlateSolution::sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) 
 std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
   PlateSolution solution;
   std::size_t count = 0, exact = 0;  // of sources, and of those that are not saturated
-  while (count < sources_.size() && exact < search_.most_stars)
+  while (count < sources_.size() && exact < search_.max_stars)
     exact += !sources_[count++].saturated;
   const auto sources = std::span(sources_).first(count);
   const SourceGrid grid(sources, hint_.columns, hint_.rows);

@@ -27,10 +27,10 @@ struct PlateSearch {
   double focal_error = 0.05;  // relative
   /// Range of the frame's width on the sky if the focal length is not known.
   double narrowest_rad = 0.8 * deg, widest_rad = 100 * deg;
-  double least_log_odds = 13.8;           // one chance in a million to be wrong
+  double min_log_odds = 13.8;             // one chance in a million to be wrong
   double star_sigma_rad = 0.05 * arcsec;  // error of the catalogue's places
-  std::size_t most_stars = 2000;          // that take part in the final fit
-  int most_order = 5;                     // of the distortion
+  std::size_t max_stars = 2000;           // that take part in the final fit
+  int max_order = 5;                      // of the distortion
 };
 
 /// A fit that leaves something else free and that the stars do not exclude.

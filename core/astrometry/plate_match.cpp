@@ -12,7 +12,7 @@ namespace {
 /// Share of the catalogue's stars in a frame that are found; the rest are in clouds, in blends, or
 /// behind what stands in front.
 constexpr double expected_share = 0.6;
-constexpr double least_sigma_px = 0.1;
+constexpr double min_sigma_px = 0.1;
 
 bool in_frame(PixelPosition p, int columns, int rows) {
   return p.x_px >= -0.5 && p.y_px >= -0.5 && p.x_px < columns - 0.5 && p.y_px < rows - 0.5;
@@ -63,7 +63,7 @@ int SourceGrid::nearest(PixelPosition at, double within_px) const {
 
 double MatchReach::at(PixelPosition place) const {
   const double distance = std::hypot(place.x_px - from.x_px, place.y_px - from.y_px);
-  if (distance > most_px) return -1.0;
+  if (distance > max_px) return -1.0;
   return near_px + growth * std::max(0.0, distance - known_px);
 }
 
@@ -104,7 +104,7 @@ double log_odds(const PlateModel& model, std::span<const SeenStar> stars, const 
   std::vector<char> hit(stars.size(), 0);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     if (fit.used[k] || pairs[k].ignored) hit[pairs[k].star] = 1;
-  const double sigma = std::max(least_sigma_px, fit.rms_px / std::sqrt(2.0));
+  const double sigma = std::max(min_sigma_px, fit.rms_px / std::sqrt(2.0));
   const double density = double(sources) / (double(columns) * rows);
   // A hit by a normal distribution of its residual: 1 is the mean of its square in two dimensions.
   const double for_hit = std::log(expected_share / (2 * pi * sigma * sigma * density)) - 1;

@@ -34,7 +34,7 @@ class SourceGrid {
 /// How far a match may lie off: `near_px`, growing beyond `known_px` from a place.
 struct MatchReach {
   PixelPosition from;
-  double near_px = 1.0, known_px = 1e9, growth = 0.0, most_px = 1e9;
+  double near_px = 1.0, known_px = 1e9, growth = 0.0, max_px = 1e9;
   double at(PixelPosition place) const;
 };
 

@@ -9,7 +9,7 @@ namespace dmise {
 namespace {
 
 /// Displacement of a star by aberration, refraction at the horizon, and motions since the epoch.
-constexpr double most_displaced_rad = 0.7 * deg;
+constexpr double max_displaced_rad = 0.7 * deg;
 
 }  // namespace
 
@@ -56,7 +56,7 @@ std::vector<SeenStar> PlateSky::brightest(const Vec<Gcrs>& axis, double radius_r
   std::vector<std::uint32_t> found;
   // Twice as many as on average, because stars crowd in the Milky Way; all of them if too few.
   for (double rank = 2.0 * double(most) / share;; rank *= 4) {
-    found = catalogued(axis, radius_rad + most_displaced_rad, rank);
+    found = catalogued(axis, radius_rad + max_displaced_rad, rank);
     if (found.size() >= most || rank >= double(map_.stars.size())) break;
   }
   const auto brighter = [&](std::uint32_t a, std::uint32_t b) {

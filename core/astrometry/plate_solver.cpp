@@ -227,7 +227,7 @@ void PlateSearcher::judge(const PlateModel& model) {
       hint_.camera_from_gcrs ? 2 * search_.focal_error * search_.roll_error_rad / pi : 1.0;
   solution->log_odds -= std::log(std::max(100.0, patterns_ * looked_up_ * priors));
   solution->tried = tried_;
-  if (solution->log_odds >= search_.least_log_odds) found_ = std::move(solution);
+  if (solution->log_odds >= search_.min_log_odds) found_ = std::move(solution);
 }
 
 PlateSolution PlateSearcher::solve() {

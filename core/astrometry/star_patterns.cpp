@@ -6,7 +6,7 @@ namespace dmise {
 namespace {
 
 constexpr std::uint32_t none = ~0U;
-constexpr double most_stars = 400'000.0;
+constexpr double max_stars = 400'000.0;
 
 /// The nearest stars that are not fainter, by rising distance.
 void nearest_brighter(const PlateSky& sky, std::uint32_t star, std::size_t most,
@@ -83,7 +83,7 @@ const PatternIndex& PatternCache::whole_sky(const PlateSky& sky, double rank) {
   // Powers of 4, so that frames of about the same width share one.
   const double count = double(sky.map().stars.size());
   const double shared =
-      std::min({std::exp2(2 * std::ceil(0.5 * std::log2(rank))), most_stars, count});
+      std::min({std::exp2(2 * std::ceil(0.5 * std::log2(rank))), max_stars, count});
   const auto kept = by_rank_.find(shared);
   if (kept != by_rank_.end()) return kept->second;
   const auto stars = sky.catalogued({0, 0, 1}, pi, shared);

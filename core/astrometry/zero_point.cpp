@@ -12,10 +12,10 @@ namespace dmise {
 namespace {
 
 constexpr double tukey = 4.685;  // 95 % efficient for normal errors
-constexpr double least_scatter_mag = 0.002;
+constexpr double min_scatter_mag = 0.002;
 // Stars determine extinction no better than this: it is not fitted; the first if it is believed,
 // unless the fit contradicts what is believed.
-constexpr double most_sigma_believed_mag = 0.005, most_sigma_mag = 0.05;
+constexpr double max_sigma_believed_mag = 0.005, max_sigma_mag = 0.05;
 constexpr double contradicting_sigmas = 4.0;
 /// Mean of the magnitude over the variance of a log-normal light whose mean is right.
 constexpr double dimming_per_mag2 = 0.2 * 2.302585092994046;
@@ -44,10 +44,9 @@ struct Scatter {
 /// explain them; one group unless `by_airmass`.
 Scatter scatter_of(std::span<const PhotometricStar> stars, std::span<const double> residuals,
                    std::size_t free, bool by_airmass) {
-  constexpr std::size_t least_group = 30, most_groups = 12;
+  constexpr std::size_t min_group = 30, max_groups = 12;
   const std::size_t n = stars.size();
-  const std::size_t groups =
-      by_airmass ? std::clamp<std::size_t>(n / least_group, 1, most_groups) : 1;
+  const std::size_t groups = by_airmass ? std::clamp<std::size_t>(n / min_group, 1, max_groups) : 1;
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t(0));
   if (groups > 1)
@@ -67,7 +66,7 @@ Scatter scatter_of(std::span<const PhotometricStar> stars, std::span<const doubl
     const double weight = 1.0 / std::max(all * all, 1e-16);
     w += weight, wx += weight * x, wxx += weight * x * x, wv += weight * v, wxv += weight * x * v;
   }
-  constexpr double least = least_scatter_mag * least_scatter_mag;
+  constexpr double least = min_scatter_mag * min_scatter_mag;
   const double det = w * wxx - wx * wx;
   Scatter s{.even_mag2 = std::max(wv / w, least)};
   if (groups < 2 || !(det > 1e-9 * w * wxx)) return s;
@@ -168,8 +167,8 @@ std::optional<ZeroPoint> fit_zero_point(std::span<const PhotometricStar> stars,
   start.extinction_fitted = by_airmass;
   const auto z = fit(stars, start, by_airmass);
   if (!start.extinction_fitted) return z;
-  if (z && z->sigma(2) < most_sigma_mag) {
-    if (!believed_extinction || z->sigma(2) < most_sigma_believed_mag) return z;
+  if (z && z->sigma(2) < max_sigma_mag) {
+    if (!believed_extinction || z->sigma(2) < max_sigma_believed_mag) return z;
     const double off = z->extinction_mag_per_airmass - *believed_extinction;
     if (std::abs(off) > contradicting_sigmas * z->sigma(2)) return z;
   }

@@ -39,10 +39,10 @@ bool is_control(std::uint32_t c) {
 
 }  // namespace
 
-std::string printable(std::string_view text, std::size_t most_bytes) {
+std::string printable(std::string_view text, std::size_t max_bytes) {
   std::string out;
   std::size_t at = 0;
-  while (at < text.size() && out.size() < most_bytes) {
+  while (at < text.size() && out.size() < max_bytes) {
     const CodePoint c = code_point(text.substr(at));
     if (c.bytes == 0)
       out += formatted("\\x%02x", static_cast<unsigned char>(text[at]));

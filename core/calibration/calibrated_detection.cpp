@@ -11,19 +11,19 @@
 namespace dmise {
 namespace {
 
-constexpr double most_shift_px = 0.2;  // of the stars from where the header has them
-constexpr double most_shift_sigmas = 5.0;
-constexpr int least_stars = 8;  // expected, and seen, before the header is doubted
+constexpr double max_shift_px = 0.2;  // of the stars from where the header has them
+constexpr double max_shift_sigmas = 5.0;
+constexpr int min_stars = 8;  // expected, and seen, before the header is doubted
 
 /// Whether a frame's stars are not where its header says. False where there is nothing like stars,
 /// as in clouds.
 bool is_wrong(const DetectionResult& result) {
   const StarsSeen& stars = result.stars;
-  if (stars.expected < least_stars) return false;
-  if (!stars.agree()) return result.report.star_like >= std::uint32_t(least_stars);
+  if (stars.expected < min_stars) return false;
+  if (!stars.agree()) return result.report.star_like >= std::uint32_t(min_stars);
   const double sigma_px = stars.scatter_px / std::sqrt(double(stars.found));
   return std::hypot(stars.shift.x_px, stars.shift.y_px) >
-         std::max(most_shift_px, most_shift_sigmas * sigma_px);
+         std::max(max_shift_px, max_shift_sigmas * sigma_px);
 }
 
 /// Removes the notes of facts that a solution has found.

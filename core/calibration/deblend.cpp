@@ -8,8 +8,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t least_pixels = 3;
-constexpr double least_factor = 1.5;  // of a peak's value over a saddle's
+constexpr std::size_t min_pixels = 3;
+constexpr double min_factor = 1.5;  // of a peak's value over a saddle's
 
 struct BlendPixel {
   int x, y;
@@ -44,9 +44,9 @@ struct Peak {
   bool split = false;  // holds parts that are listed
 
   double height() const { return pixels[0].value; }
-  bool stands_over(double saddle, double least_rise) const {
-    return pixels.size() >= least_pixels && height() >= least_factor * saddle &&
-           height() >= saddle + least_rise;
+  bool stands_over(double saddle, double min_rise) const {
+    return pixels.size() >= min_pixels && height() >= min_factor * saddle &&
+           height() >= saddle + min_rise;
   }
   Peak* root() {
     Peak* at = this;
@@ -57,13 +57,13 @@ struct Peak {
 
 }  // namespace
 
-std::vector<Component> deblend(const Component& component, double least_rise,
+std::vector<Component> deblend(const Component& component, double min_rise,
                                const std::function<double(int, int)>& value) {
   std::vector<BlendPixel> pixels;
   for (const Run& run : component.runs)
     for (int x = run.first_x; x <= run.last_x; ++x)
       if (const double v = value(x, run.y); v > 0) pixels.push_back({x, run.y, v});
-  if (pixels.size() < 2 * least_pixels) return {component};
+  if (pixels.size() < 2 * min_pixels) return {component};
   std::ranges::stable_sort(pixels, std::greater(), &BlendPixel::value);
   const int wide = component.max_x - component.min_x + 3;
   const int high = component.max_y - component.min_y + 3;
@@ -80,10 +80,10 @@ std::vector<Component> deblend(const Component& component, double least_rise,
       if (!here) here = other;
       if (other == here) continue;
       if (other->height() > here->height()) std::swap(here, other);
-      if (other->split || (other->stands_over(p.value, least_rise) &&
-                           (here->split || here->stands_over(p.value, least_rise)))) {
+      if (other->split || (other->stands_over(p.value, min_rise) &&
+                           (here->split || here->stands_over(p.value, min_rise)))) {
         for (Peak* peak : {here, other}) {
-          if (!peak->split && peak->stands_over(p.value, least_rise))
+          if (!peak->split && peak->stands_over(p.value, min_rise))
             parts.push_back(component_of(peak->pixels, component.peak_snr));
           peak->split = true;
         }

@@ -7,10 +7,10 @@
 namespace dmise {
 
 /// Splits a component at the saddles between its peaks, by the values (x, y) of its pixels. Both
-/// peaks must reach 1.5 times the saddle's value and rise by `least_rise` over it. Each part holds
+/// peaks must reach 1.5 times the saddle's value and rise by `min_rise` over it. Each part holds
 /// what is above the highest saddle around it, at least 3 pixels. What does not split is returned
 /// as it is.
-std::vector<Component> deblend(const Component& component, double least_rise,
+std::vector<Component> deblend(const Component& component, double min_rise,
                                const std::function<double(int, int)>& value);
 
 }  // namespace dmise

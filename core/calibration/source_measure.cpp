@@ -93,8 +93,8 @@ bool SourceMeasure::improve(SourceMoments& m) const {
   sy /= sum;
   m.x += 2 * sx;
   m.y += 2 * sy;
-  m.xx = std::max(2 * (sxx / sum - sx * sx), least_variance_px2);
-  m.yy = std::max(2 * (syy / sum - sy * sy), least_variance_px2);
+  m.xx = std::max(2 * (sxx / sum - sx * sx), min_variance_px2);
+  m.yy = std::max(2 * (syy / sum - sy * sy), min_variance_px2);
   m.xy = 2 * (sxy / sum - sx * sy);
   m.flux = 2 * sum;  // the weight halves a Gaussian's light
   return std::isfinite(m.x + m.y) && contains(int(std::lround(m.x)), int(std::lround(m.y)));
@@ -168,7 +168,7 @@ std::optional<PlateSource> SourceMeasure::source(const SourceMoments& m, double 
     return std::nullopt;
   const double scale = std::max(1.0, fit.reduced_chi2());
   const double flux_sigma = std::sqrt(scale * fit.cov(2, 2));
-  if (t.flux_e < settings_.least_snr * flux_sigma) return std::nullopt;
+  if (t.flux_e < settings_.min_snr * flux_sigma) return std::nullopt;
   return PlateSource{
       t.x_px,     t.y_px,
       t.flux_e,   {scale * fit.cov(0, 0), scale * fit.cov(0, 1), scale * fit.cov(1, 1)},

@@ -11,7 +11,7 @@
 
 namespace dmise {
 
-inline constexpr double least_variance_px2 = 0.1;  // of an image along x and along y
+inline constexpr double min_variance_px2 = 0.1;  // of an image along x and along y
 
 /// An image's place, second moments and light, weighted by a Gaussian of these moments.
 struct SourceMoments {
@@ -21,7 +21,7 @@ struct SourceMoments {
   double mean() const { return 0.5 * (xx + yy); }
   double half() const { return std::hypot(0.5 * (xx - yy), xy); }
   /// Whether it is narrower than its pixels resolve: the moments then say nothing of its width.
-  bool collapsed() const { return std::min(xx, yy) <= least_variance_px2; }
+  bool collapsed() const { return std::min(xx, yy) <= min_variance_px2; }
   double minor_sigma() const { return std::sqrt(std::max(mean() - half(), 1.0 / 12)); }
   double major_sigma() const { return std::sqrt(std::max(mean() + half(), 1.0 / 12)); }
   double angle_rad() const { return 0.5 * std::atan2(2 * xy, xx - yy); }

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double common_error_mag = 0.01;   // of the stars' measurement, equal for all
 constexpr double gaussian_error_mag = 0.1;  // equal for all, by Gaussians: wings are 0 to 0.23 mag
-constexpr double least_snr = 12.0;          // of stars that are found however noise dims them
+constexpr double min_snr = 12.0;            // of stars that are found however noise dims them
 constexpr double low_deviations = 2.5;      // of the stars' scatter, by which they may be fainter
-constexpr double most_shared = 0.1;         // of a star's light, from neighbours
-constexpr double most_airmass = 3.0;        // scintillation, haze and the band's width below
+constexpr double max_shared = 0.1;          // of a star's light, from neighbours
+constexpr double max_airmass = 3.0;         // scintillation, haze and the band's width below
 constexpr std::size_t enough_stars = 20;    // to do without others
 constexpr std::size_t complete_sources = 1000;  // fewer were not cut off at a number
 
@@ -124,15 +124,15 @@ std::vector<Candidate> candidates_of(const Frame& frame, const PlateSolution& pl
                    .shared_e = shared * source.flux});
   }
   if (out.empty()) return out;
-  std::erase_if(out, [](const Candidate& c) { return c.shared_e > most_shared * c.flux_e; });
+  std::erase_if(out, [](const Candidate& c) { return c.shared_e > max_shared * c.flux_e; });
   for (Candidate& c : out) {
     c.star.instrumental_mag = mag_of(c.flux_e / (c.light * frame.header.exposure_s));
     c.star.sigma_mag = 2.5 / std::log(10.0) * std::sqrt(c.sky_e2 + c.flux_e) / c.flux_e;
   }
   if (std::ranges::count_if(out, [](const Candidate& c) {
-        return c.star.airmass <= most_airmass;
+        return c.star.airmass <= max_airmass;
       }) >= std::ptrdiff_t(enough_stars))
-    std::erase_if(out, [](const Candidate& c) { return c.star.airmass > most_airmass; });
+    std::erase_if(out, [](const Candidate& c) { return c.star.airmass > max_airmass; });
   return out;
 }
 
@@ -168,7 +168,7 @@ std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& 
       const double snr = expected_e / std::sqrt(c.sky_e2 + expected_e);
       c.star.sigma_mag = 2.5 / std::log(10.0) / snr;
       const double fainter = std::pow(10.0, -0.4 * low_deviations * z->scatter_mag(c.star.airmass));
-      margins.push_back(std::min(snr / least_snr, expected_e / listed_e) * fainter);
+      margins.push_back(std::min(snr / min_snr, expected_e / listed_e) * fainter);
     }
     std::vector<double> sorted = margins;
     std::ranges::sort(sorted, std::greater());

@@ -20,8 +20,8 @@
 namespace dmise {
 namespace {
 
-constexpr int most_component_px = 4000;  // more are no star
-constexpr double rise_of_a_star = 5.0;   // over a saddle, in noise of a pixel
+constexpr int max_component_px = 4000;  // more are no star
+constexpr double rise_of_a_star = 5.0;  // over a saddle, in noise of a pixel
 
 /// FWHM of a star before pixels widened it, about.
 double fwhm_of(const StarSourceSettings& settings) {
@@ -32,12 +32,12 @@ double fwhm_of(const StarSourceSettings& settings) {
 /// Width of the Gaussian that fits images best, by golden section; the worse half may be blends.
 double best_sigma_px(const SourceMeasure& measure,
                      std::span<const std::optional<SourceMoments>> moments, double start_px) {
-  constexpr std::size_t brightest = 400, most_images = 200;
+  constexpr std::size_t brightest = 400, max_images = 200;
   std::vector<SourceMoments> images;
   for (const auto& m : moments)
     if (m && images.size() < brightest) images.push_back(*m);
   if (images.size() < 3) return start_px;
-  const std::size_t every = (images.size() + most_images - 1) / most_images;
+  const std::size_t every = (images.size() + max_images - 1) / max_images;
   for (std::size_t i = 0; i * every < images.size(); ++i) images[i] = images[i * every];
   images.resize((images.size() + every - 1) / every);
   const auto misfit = [&](double sigma_px) {
@@ -85,8 +85,8 @@ class StarImages {
 void StarImages::find(const CountImage& counts, double filter_px,
                       const StarSourceSettings& settings) {
   for (const Component& c :
-       find_components(counts, background_, filter_px, 3.0, settings.least_snr, threads_)) {
-    if (c.pixels > most_component_px) continue;
+       find_components(counts, background_, filter_px, 3.0, settings.min_snr, threads_)) {
+    if (c.pixels > max_component_px) continue;
     const auto signal = [&](int x, int y) { return measure_.signal_e(x, y); };
     const double noise_e = measure_.noise_e(c.peak_x, c.peak_y);
     for (Component& part : deblend(c, rise_of_a_star * noise_e, signal)) {
@@ -143,7 +143,7 @@ std::vector<PlateSource> sources_of_trails(const CountImage& counts,
   use_psf_of_stars(scene, threads);
   std::vector<PlateSource> sources;
   for (const TrailedStar& star : find_trailed_stars(scene))
-    if (star.trail.flux_e > settings.least_snr * star.flux_sigma_e)
+    if (star.trail.flux_e > settings.min_snr * star.flux_sigma_e)
       sources.push_back({star.trail.x_px, star.trail.y_px, star.trail.flux_e, star.covariance_px2,
                          star.flux_sigma_e, false});
   std::ranges::stable_sort(sources, std::greater(), &PlateSource::flux);
@@ -181,7 +181,7 @@ std::vector<PlateSource> find_star_sources(const CountImage& counts,
 std::optional<StarShape> measure_star_shape(const CountImage& counts,
                                             const StarSourceSettings& settings, Threads& threads) {
   constexpr std::size_t least = 5, most = 200;
-  constexpr double least_agreement = 0.8;  // of angles: the mean of unit vectors of twice the angle
+  constexpr double min_agreement = 0.8;  // of angles: the mean of unit vectors of twice the angle
   const StarImages images(counts, settings, threads);
   StarShape shape{.sigma_px = images.sigma_px()};
   std::vector<double> lengths;
@@ -201,8 +201,7 @@ std::optional<StarShape> measure_star_shape(const CountImage& counts,
   if (lengths.size() < least) return std::nullopt;
   shape.stars = int(lengths.size());
   const double length_px = median_of(lengths);
-  if (length_px > 2 * shape.sigma_px &&
-      std::hypot(c, s) > least_agreement * double(lengths.size())) {
+  if (length_px > 2 * shape.sigma_px && std::hypot(c, s) > min_agreement * double(lengths.size())) {
     shape.length_px = length_px;
     shape.angle_rad = 0.5 * std::atan2(s, c);
   }

@@ -14,7 +14,7 @@ struct StarSourceSettings {
   double gain_e_per_dn = 1.0;
   double saturation_dn = 65535.0;  // counts from here on may be clipped
   double psf_fwhm_px = 0.0;        // about; 0: not known
-  double least_snr = 6.0;
+  double min_snr = 6.0;
   std::size_t most = 2000;  // the brightest, and further ones until as many are not saturated
   const StarMotion* motion = nullptr;  // of the stars, if known
   bool unknown_mount = false;          // so that long trails by `motion` are searched as trails

@@ -180,12 +180,12 @@ void add_optics(const CalibrationSet& set, const StatedCamera& stated, const Sta
 
 /// Vignetting as flats show it.
 void add_vignetting(const FlatResponse& response, CameraCalibration& camera) {
-  constexpr double least_loss = 0.005, least_sigmas = 5.0;
+  constexpr double min_loss = 0.005, min_sigmas = 5.0;
   if (response.field.empty()) return;
   double lowest = 1.0, sigma = 0.0;
   for (const FieldLight& light : response.field)
     if (light.relative.value < lowest) lowest = light.relative.value, sigma = light.relative.sigma;
-  if (1 - lowest < std::max(least_loss, least_sigmas * sigma)) return;
+  if (1 - lowest < std::max(min_loss, min_sigmas * sigma)) return;
   CameraTable table{.key = "optics.vignetting",
                     .columns = {{"relative_illumination", {}}},
                     .how = counted(std::size_t(response.frames), "flat")};

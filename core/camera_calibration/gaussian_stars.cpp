@@ -212,14 +212,14 @@ SkyLevel sky_of(std::vector<float> ring) {
 
 std::vector<GaussianStar> measure_star_images(const StarPixels& pixels,
                                               std::span<const FoundStar> places, double fwhm_px) {
-  constexpr double most_blend = 0.02, least_snr = 30.0;
+  constexpr double max_blend = 0.02, min_snr = 30.0;
   const double radius_px = window_radius_px(fwhm_px);
   std::vector<FittedImage> fits;
   std::vector<double> even;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const FoundStar& place = places[k];
     if (!is_within(pixels, place.at, radius_px + 1) || is_clipped(pixels, place, fwhm_px) ||
-        light_beside(pixels, places, place, 1.5 * radius_px) > most_blend * place.flux_e)
+        light_beside(pixels, places, place, 1.5 * radius_px) > max_blend * place.flux_e)
       continue;
     auto fit = fitted_image(pixels, place, fwhm_px, radius_px);
     if (!fit) continue;
@@ -233,7 +233,7 @@ std::vector<GaussianStar> measure_star_images(const StarPixels& pixels,
   for (FittedImage& fit : fits) {
     fit.star.flux_sigma_e = fit.flux.sigma(even_variance);
     fit.star.variance_sigma_px2 = fit.width.sigma(even_variance);
-    if (fit.star.flux_e > least_snr * fit.star.flux_sigma_e) out.push_back(fit.star);
+    if (fit.star.flux_e > min_snr * fit.star.flux_sigma_e) out.push_back(fit.star);
   }
   return out;
 }

@@ -231,7 +231,7 @@ double focal_by_frames(const std::vector<LensFrame>& frames, const LensSolution&
 
 std::optional<LensFit> fit_lens(const std::vector<LensFrame>& frames, const Projection& projection,
                                 double focal_length_px, int columns, int rows) try {
-  constexpr std::size_t most_terms = 2;
+  constexpr std::size_t max_terms = 2;
   LensModel model{
       .projection = projection.index(),
       .coefficients = {projection.coefficients().begin(), projection.coefficients().end()},
@@ -252,7 +252,7 @@ std::optional<LensFit> fit_lens(const std::vector<LensFrame>& frames, const Proj
   LensModel next = best->model;
   next.projection = family;
   next.coefficients.assign(Projection::rows()[family].coefficients.size(), 0.0);
-  for (std::size_t terms = 1; terms <= most_terms; ++terms) {
+  for (std::size_t terms = 1; terms <= max_terms; ++terms) {
     next.free = terms;
     auto more = solve_lens(frames, next, used);
     if (!more) break;

@@ -12,7 +12,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t width_terms = 5;  // level, two of the radial and two of the tangential width
-constexpr std::size_t width_parts = 32, least_stars = 8, least_field_stars = 24;
+constexpr std::size_t width_parts = 32, min_stars = 8, min_field_stars = 24;
 constexpr int width_nodes = 5;
 using WidthSums = StripSums<width_terms * width_terms + width_terms>;
 using WidthTerms = std::array<double, width_terms>;
@@ -111,16 +111,16 @@ double mean_width_at(const WidthTerms& terms, WidthModel model, double t) {
 /// Weights by the stars' scatter about a fit beside their noise; takes out what is far from it.
 /// Returns the deviation by which frames differ.
 double weigh(WidthModel model, std::vector<RadialImage>& images) {
-  constexpr double outlier_sigmas_of_width = 4.5, least_variance = 1e-6;
+  constexpr double outlier_sigmas_of_width = 4.5, min_variance = 1e-6;
   std::vector<double> widths;
   for (const RadialImage& image : images) widths.push_back(image.mean_px2());
   WidthTerms last{median_of(std::move(widths))};
   const auto expect_all = [&] {
     for (RadialImage& image : images) image.expect(mean_width_at(last, model, image.t));
-    const double most_px4 = last[0] * last[0];
+    const double max_px4 = last[0] * last[0];
     return scatter_beside(
         images, [](const RadialImage& image) { return image.off; },
-        [](const RadialImage& image) { return image.noise; }, least_variance, most_px4);
+        [](const RadialImage& image) { return image.noise; }, min_variance, max_px4);
   };
   for (int round = 0; round < 6; ++round) {
     const double scatter2 = expect_all();
@@ -128,7 +128,7 @@ double weigh(WidthModel model, std::vector<RadialImage>& images) {
     for (const RadialImage& image : images)
       if (std::abs(image.off) < outlier_sigmas_of_width * std::sqrt(image.noise + scatter2))
         images[kept++] = image;
-    if (round > 1 && kept >= least_stars) images.resize(kept);
+    if (round > 1 && kept >= min_stars) images.resize(kept);
     for (RadialImage& image : images) image.weight = 1 / (image.noise + scatter2);
     WidthSums all{};
     for (const WidthSums& part : width_sums(images, model))
@@ -166,8 +166,8 @@ std::optional<double> usual_variance_px2(std::span<const GaussianStar> images, i
                                          int rows) {
   constexpr double usual_t = 1.0 / 3;
   std::vector<RadialImage> stars = radial_images(images, columns, rows);
-  if (stars.size() < least_stars) return std::nullopt;
-  const WidthModel model = stars.size() >= least_field_stars ? WidthModel::round : WidthModel::even;
+  if (stars.size() < min_stars) return std::nullopt;
+  const WidthModel model = stars.size() >= min_field_stars ? WidthModel::round : WidthModel::even;
   weigh(model, stars);
   WidthSums all{};
   for (const WidthSums& part : width_sums(stars, model))
@@ -181,8 +181,8 @@ std::optional<LensWidth> measure_width(std::span<const GaussianStar> images, int
                                        int rows) {
   const double corner = std::hypot(0.5 * (columns - 1), 0.5 * (rows - 1));
   std::vector<RadialImage> stars = radial_images(images, columns, rows);
-  if (stars.size() < least_stars) return std::nullopt;
-  const bool has_field = stars.size() >= least_field_stars;
+  if (stars.size() < min_stars) return std::nullopt;
+  const bool has_field = stars.size() >= min_field_stars;
   const double by_frames = weigh(has_field ? WidthModel::round : WidthModel::even, stars);
   // A few bright stars may hold most of the weight: leaving out parts does not show their scatter.
   const auto measured = [&](WidthModel model, auto&& value_of) {
@@ -198,7 +198,7 @@ std::optional<LensWidth> measure_width(std::span<const GaussianStar> images, int
     return MeasuredValue{m.value, std::hypot(m.sigma, by_frames)};
   };
   LensWidth out{.even_px2 = of_all(WidthModel::even, [](const WidthTerms& w) { return w[0]; })};
-  if (!has_field || stars.size() < least_field_stars) return out;
+  if (!has_field || stars.size() < min_field_stars) return out;
   for (int node = 0; node < width_nodes; ++node) {
     const double r = double(node) / (width_nodes - 1), t = r * r;
     const auto at = [t](WidthModel model, bool tangential) {

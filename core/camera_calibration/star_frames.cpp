@@ -165,7 +165,7 @@ double light_of_neighbours(const PlateSolution& plate, std::span<const PixelPosi
 /// Adds the zero points on the axis that stars show by their light within apertures.
 void add_light(const StarFrame& in, const FrameSolution& solution, const StarDetector& detector,
                const StarMap& stars, StarValues& values) {
-  constexpr double least_snr_of_light = 20.0, most_of_neighbours = 0.1,
+  constexpr double min_snr_of_light = 20.0, most_of_neighbours = 0.1,
                    uncertain_beside = 0.1;  // by their colours
   const ZeroPoint& z = *solution.zero_point;
   const FrameHeader& h = in.frame.header;
@@ -187,7 +187,7 @@ void add_light(const StarFrame& in, const FrameSolution& solution, const StarDet
     const auto light =
         aperture_light(in.pixels, in.places[places[k]], strangers, all_at, in.fwhm_px,
                        [&](PixelPosition at) { return detector.illumination(at); });
-    if (!light || !(light->flux_e > least_snr_of_light * light->sigma_e)) continue;
+    if (!light || !(light->flux_e > min_snr_of_light * light->sigma_e)) continue;
     const double x =
         h.site ? airmass(std::asin(std::clamp(dot(star.direction, unit(zenith_of(h))), -1.0, 1.0)))
                : 0.0;

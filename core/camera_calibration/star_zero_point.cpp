@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t light_parts = 32, least_light_stars = 5, least_coloured_stars = 10;
+constexpr std::size_t light_parts = 32, min_light_stars = 5, min_coloured_stars = 10;
 using LightSums = StripSums<5>;  // weights; with colour, its square; with values
 
 /// Zero point and colour term.
@@ -31,26 +31,25 @@ struct OffLine {
 };
 
 double scatter_of(const std::vector<OffLine>& stars) {
-  constexpr double least_mag = 1e-3, most_mag = 0.3;
+  constexpr double min_mag = 1e-3, max_mag = 0.3;
   return scatter_beside(
       stars, [](const OffLine& s) { return s.off; },
-      [](const OffLine& s) { return s.noise * s.noise; }, least_mag * least_mag,
-      most_mag * most_mag);
+      [](const OffLine& s) { return s.noise * s.noise; }, min_mag * min_mag, max_mag * max_mag);
 }
 
 /// Weights by noise and scatter; 0 of outliers, and of faint stars if there are enough others.
 void weigh(std::vector<OffLine>& stars, double scatter2) {
-  constexpr double light_outlier_sigmas = 4.0, most_noise_mag = 0.03;
-  for (const double most_mag : {most_noise_mag, HUGE_VAL}) {
+  constexpr double light_outlier_sigmas = 4.0, max_noise_mag = 0.03;
+  for (const double max_mag : {max_noise_mag, HUGE_VAL}) {
     std::size_t kept = 0;
     for (OffLine& s : stars) {
       const double variance = s.noise * s.noise + scatter2;
       const bool use =
-          s.noise < most_mag && std::abs(s.off) < light_outlier_sigmas * std::sqrt(variance);
+          s.noise < max_mag && std::abs(s.off) < light_outlier_sigmas * std::sqrt(variance);
       s.weight = use ? 1 / variance : 0.0;
       kept += use;
     }
-    if (kept >= least_coloured_stars) return;
+    if (kept >= min_coloured_stars) return;
   }
 }
 
@@ -79,11 +78,11 @@ double weighted_median_of(std::span<const StarZeroPoint> stars) {
 class LightFit {
  public:
   explicit LightFit(std::span<const StarZeroPoint> stars) : stars_(stars) {
-    constexpr double least_colours = 0.3;
+    constexpr double min_colours = 0.3;
     std::vector<double> colours;
     for (const StarZeroPoint& star : stars) colours.push_back(star.bv);
-    coloured_ = stars.size() >= least_coloured_stars &&
-                quantile_of(colours, 0.9) - quantile_of(colours, 0.1) > least_colours;
+    coloured_ = stars.size() >= min_coloured_stars &&
+                quantile_of(colours, 0.9) - quantile_of(colours, 0.1) > min_colours;
     line_[0] = weighted_median_of(stars);
     for (int round = 0; round < 8; ++round) {
       beside_.clear();
@@ -129,7 +128,7 @@ class LightFit {
   }
   bool has_stars() const {
     return std::ranges::count_if(beside_, [](const OffLine& s) { return s.weight > 0; }) >=
-           std::ptrdiff_t(least_light_stars);
+           std::ptrdiff_t(min_light_stars);
   }
 
  private:
@@ -142,7 +141,7 @@ class LightFit {
 }  // namespace
 
 std::optional<MeasuredValue> joint_zero_point(std::span<const StarZeroPoint> stars) {
-  if (stars.size() < least_light_stars) return std::nullopt;
+  if (stars.size() < min_light_stars) return std::nullopt;
   const LightFit fit(stars);
   if (!fit.has_stars()) return std::nullopt;
   MeasuredValue out = fit.zero_point();

@@ -17,10 +17,10 @@
 namespace dmise {
 namespace {
 
-constexpr double beyond_run_s = 300.0;      // about the run: light time, exposures
-constexpr double most_eccentricity = 0.01;  // of a chief that must be on a circle
-constexpr double step_rad = 0.02;           // of the chief's orbit between states
-constexpr double noted_part = 0.01;         // of the distance, of an error
+constexpr double beyond_run_s = 300.0;     // about the run: light time, exposures
+constexpr double max_eccentricity = 0.01;  // of a chief that must be on a circle
+constexpr double step_rad = 0.02;          // of the chief's orbit between states
+constexpr double noted_part = 0.01;        // of the distance, of an error
 
 struct Span {
   double from_s, to_s;
@@ -131,12 +131,12 @@ class Deputy {
       throw ConfigError(proximity_.where + ": natural: " + proximity_.chief + " is in no orbit");
     if (!needs_circular_chief(proximity_.motion)) return;
     const double e = eccentricity_of(chief_0_, gm_m3_per_s2_);
-    if (!(e <= most_eccentricity))
+    if (!(e <= max_eccentricity))
       throw ConfigError(proximity_.where + ": " +
                         formatted("the eccentricity of %s is %.3g, and Clohessy and Wiltshire's "
                                   "motion is about circles, up to %g: natural with dynamics: "
                                   "two_body takes any",
-                                  proximity_.chief.c_str(), e, most_eccentricity));
+                                  proximity_.chief.c_str(), e, max_eccentricity));
   }
 
   void add_segments(const ChiefPath& chief, Trajectory& path) const {

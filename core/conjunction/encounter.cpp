@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr double least_sigma_m = 1e-3;
+constexpr double min_sigma_m = 1e-3;
 constexpr double reach_sigmas = 9.0;  // beyond which the density is below 1e-18
 constexpr int intervals = 2000;       // of Simpson's rule
 
@@ -75,8 +75,7 @@ double collision_probability(const Eigen::Vector3d& position_m,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(plane * covariance_m2 *
                                                             plane.transpose());
   const Eigen::Vector2d mean = axes.eigenvectors().transpose() * (plane * position_m);
-  const Eigen::Vector2d sigma =
-      axes.eigenvalues().cwiseMax(least_sigma_m * least_sigma_m).cwiseSqrt();
+  const Eigen::Vector2d sigma = axes.eigenvalues().cwiseMax(min_sigma_m * min_sigma_m).cwiseSqrt();
   return std::clamp(over_disc(mean, sigma, radius_m), 0.0, 1.0);
 }
 

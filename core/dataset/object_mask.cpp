@@ -12,9 +12,9 @@ ObjectMask mask_of(const ExpectedElectronImage& light, double share) {
   for (const float e : light.pixels) mask.all_e += double(e);
   if (!(mask.all_e > 0.0)) return mask;
   // Pixels below this hold less than 1 - share together.
-  const double least_e = (1.0 - share) * mask.all_e / double(light.pixels.size());
+  const double min_e = (1.0 - share) * mask.all_e / double(light.pixels.size());
   for (std::uint32_t i = 0; i < light.pixels.size(); ++i)
-    if (double(light.pixels[i]) > least_e) mask.pixels.push_back(i);
+    if (double(light.pixels[i]) > min_e) mask.pixels.push_back(i);
   std::sort(mask.pixels.begin(), mask.pixels.end(), [&](std::uint32_t a, std::uint32_t b) {
     return light.pixels[a] != light.pixels[b] ? light.pixels[a] > light.pixels[b] : a < b;
   });

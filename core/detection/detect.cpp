@@ -102,8 +102,8 @@ bool is_row_of_stars(const Scene& scene, const Source& source) {
   if (rise <= 0) return true;
   const double noise = 1 / source.snr(), scatter = 1 / rise;  // in units of the streak's light
   const double stars = std::sqrt(std::max(scatter * scatter - noise * noise, 0.0));
-  return std::hypot(detection_limits::least_snr * noise,
-                    detection_limits::least_snr_in_stars * stars) > 1;
+  return std::hypot(detection_limits::min_snr * noise, detection_limits::min_snr_in_stars * stars) >
+         1;
 }
 
 /// Whether noise may have made a streak: its light is not sure with the errors of its ends and of
@@ -111,7 +111,7 @@ bool is_row_of_stars(const Scene& scene, const Source& source) {
 bool is_lost_in_its_errors(const Scene& scene, const FrameHeader& header, Source source) {
   if (!source.streak) return false;
   if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
-  return source.snr() < detection_limits::least_published_snr &&
+  return source.snr() < detection_limits::min_published_snr &&
          template_snr(scene, source.trail()) < detection_limits::sure_snr;
 }
 
@@ -121,7 +121,7 @@ bool add_errors_of_ends(const Scene& scene, const FrameHeader& header, Source& s
   Source seen = source;  // with errors that do not depend on the noise beside its ends
   add_steps_at_ends(seen, scene.sigma_px);
   add_errors_of_hidden_ends(scene, seen);
-  if (seen.snr() < detection_limits::least_light_snr) return false;
+  if (seen.snr() < detection_limits::min_light_snr) return false;
   add_neglected_errors(source, ends ? &*ends : nullptr);
   if (is_lost_in_its_errors(scene, header, source)) return false;
   if (!ends) add_errors_of_hidden_ends(scene, source);
@@ -153,7 +153,7 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
       judged.sources, [&](const Source& source) { return is_row_of_stars(scene, source); }));
   for (std::size_t i = 0; i < components.size(); ++i)
     if (judged.reach_px[i]) hide(filtered, components[i], *judged.reach_px[i]);
-  for (const auto& area : background.bent_cells(detection_limits::most_bend_in_noise))
+  for (const auto& area : background.bent_cells(detection_limits::max_bend_in_noise))
     for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
   if (!known) filtered.flatten(threads);
   for (Source& source : find_faint_streaks(scene, filtered, threads))

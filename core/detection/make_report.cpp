@@ -56,8 +56,8 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   FrameReport r = unmeasured_report(counts, header);
   r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
-  const double least_e = limiting_point_e(r.noise_e, sigma_px);
-  r.limiting_magnitude = r.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
+  const double min_e = limiting_point_e(r.noise_e, sigma_px);
+  r.limiting_magnitude = r.zero_point_mag - 2.5 * std::log10(min_e / header.exposure_s) -
                          extinction_mag(header, centre_of(counts));
   r.psf_fwhm_px = fwhm_before_pixel(sigma_px);
   r.psf_stars = std::uint32_t(psf.stars);

@@ -74,7 +74,7 @@ CosmicRays::Prepared CosmicRays::charges(int columns, int rows, double exposure_
 CosmicRays::Prepared CosmicRays::prepare(const ExposureFacts& exposed) const {
   const double exposure_s = exposed.exposure.exposure_s;
   const double hits = cosmic_rays_per_px_s * exposure_s * double(exposed.light.pixels.size());
-  if (hits > most_cosmic_hits)
+  if (hits > max_cosmic_hits)
     throw Error("detector.cosmic_rays_per_px_s: an exposure must expect <= 1e7 hits, got " +
                 std::to_string(hits));
   return charges(exposed.light.columns, exposed.light.rows, exposure_s, exposed.key);

@@ -13,7 +13,7 @@ struct CosmicCharge {
 };
 
 /// Limit on the number of hits in one exposure.
-inline constexpr double most_cosmic_hits = 1e7;
+inline constexpr double max_cosmic_hits = 1e7;
 
 /// Straight tracks through the sensitive layer, isotropic from above; each pixel is charged by the
 /// track length inside it. Landau fluctuations are neglected.
@@ -34,7 +34,7 @@ struct CosmicRays {
   /// Charges of one exposure, sorted by pixel.
   using Prepared = std::vector<CosmicCharge>;
   Prepared charges(int columns, int rows, double exposure_s, const RngKey& key) const;
-  /// Throws `Error` if more than `most_cosmic_hits` hits are expected.
+  /// Throws `Error` if more than `max_cosmic_hits` hits are expected.
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& charges, Piece& piece) const;
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }

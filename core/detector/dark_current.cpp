@@ -9,7 +9,7 @@ namespace dmise {
 namespace {
 
 constexpr double absolute_zero_c = -273.15, hottest_c = 100.0;
-constexpr double most_e_per_s = 1e9;
+constexpr double max_e_per_s = 1e9;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ double DarkCurrent::thermal_factor() const {
 std::span<const DetectorParameter> DarkCurrent::parameters() {
   static constexpr DetectorParameter table[] = {
       {"dark_e_per_s", "", "[e-/s] dark current at dark_reference_c", &DarkCurrent::dark_e_per_s,
-       0.0, most_e_per_s},
+       0.0, max_e_per_s},
       {"dark_reference_c", "DARKREFT", "[deg C] where dark currents are known",
        &DarkCurrent::dark_reference_c, absolute_zero_c, hottest_c},
       {"temperature_c", "DET-TEMP", "[deg C] of the detector", &DarkCurrent::temperature_c,
@@ -40,7 +40,7 @@ std::optional<DetectorFault> DarkCurrent::fault(const Detector& d) {
     return DetectorFault{"dark_doubling_k",
                          "must be > 0 when temperature_c is not dark_reference_c",
                          d.dark_doubling_k};
-  if (!(std::fmax(d.dark_e_per_s, d.hot_pixel_e_per_s) * d.thermal_factor() <= most_e_per_s))
+  if (!(std::fmax(d.dark_e_per_s, d.hot_pixel_e_per_s) * d.thermal_factor() <= max_e_per_s))
     return DetectorFault{"temperature_c", "dark current there must be <= 1e9 e-/s",
                          d.temperature_c};
   return std::nullopt;

@@ -38,24 +38,23 @@ ErrorBound PhotonNoise::error(int level, const PlanFacts& f) {
   const double seen = 1.0 - std::min(1.0, f.hidden_sky_px);       // behind a dark object
   for (const auto& s : f.sky) most = std::max(most, skewness(seen * s.sky_e + f.dark_e));
   ErrorBound error{.noise = 4.0 / 9.0 * most};
-  double least_e = f.sees_horizon ? f.dark_e : unbounded;
-  for (const auto& s : f.sky) least_e = std::min(least_e, s.sky_e + f.dark_e);
+  double min_e = f.sees_horizon ? f.dark_e : unbounded;
+  for (const auto& s : f.sky) min_e = std::min(min_e, s.sky_e + f.dark_e);
   constexpr double never_negative_e = 16.0;
-  if (least_e > never_negative_e || (read_e2 > 0.0 && !f.read_later)) return error;
+  if (min_e > never_negative_e || (read_e2 > 0.0 && !f.read_later)) return error;
   // Charge is held at 0: its mean rises by up to 0.102 e- and its variance falls by up to 0.27.
-  error.background_sigma = 0.102 / std::sqrt(least_e + read_e2 + 1e-6);
+  error.background_sigma = 0.102 / std::sqrt(min_e + read_e2 + 1e-6);
   error.noise += 0.5 * 0.27 / (0.4 + read_e2);
   return error;
 }
 
 double PhotonNoise::cost_s(int level, const PlanFacts& f) {
-  constexpr double gaussian_s = 3.2e-9, large_s = 3.6e-9, small_s = 9e-9, least_s = 2.6e-9,
+  constexpr double gaussian_s = 3.2e-9, large_s = 3.6e-9, small_s = 9e-9, min_s = 2.6e-9,
                    dark_s = 1.5e-9, read_s = 2.3e-9;
   double light_e = unbounded;
   for (const auto& s : f.sky) light_e = std::min(light_e, s.sky_e);
   // Inversion below 24 electrons, by as many steps.
-  const double poisson_s =
-      light_e < 24.0 ? least_s + light_e / 24.0 * (small_s - least_s) : large_s;
+  const double poisson_s = light_e < 24.0 ? min_s + light_e / 24.0 * (small_s - min_s) : large_s;
   const double others_s = (f.dark_e > 0.0 ? dark_s : 0.0) + (f.read_noise_e > 0.0 ? read_s : 0.0);
   return f.pixels() * (level == 0          ? others_s
                        : level == gaussian ? gaussian_s

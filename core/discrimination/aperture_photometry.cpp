@@ -43,7 +43,7 @@ double median_of(std::vector<double>& values) {
 }
 
 Ring clipped(std::vector<double> values) {
-  constexpr int most_rounds = 5;
+  constexpr int max_rounds = 5;
   constexpr double clip_sigmas = 3.0;
   Ring ring;
   for (int round = 0;; ++round) {
@@ -54,7 +54,7 @@ Ring clipped(std::vector<double> values) {
     for (const double v : values) square += (v - ring.mean) * (v - ring.mean);
     ring.sigma = std::sqrt(square / double(count));
     ring.pixels = count;
-    if (round == most_rounds) return ring;
+    if (round == max_rounds) return ring;
     const double middle = median_of(values), reach = clip_sigmas * ring.sigma;
     std::erase_if(values, [&](double v) { return std::abs(v - middle) > reach; });
     if (values.size() == count || values.empty()) return ring;

@@ -82,7 +82,7 @@ double of_patches(const SkySample& s, const PlanFacts& f) {
   if (f.sees_zenith)
     missed_e += tip * patch_rad * mag_per_rad / std::max(f.zenith_extinction_mag, 0.05) *
                 s.of(SkyPart::twilight);
-  if (f.scene.on_ground) missed_e += steep(1.0 / f.most_airmass) * s.sky_e;
+  if (f.scene.on_ground) missed_e += steep(1.0 / f.max_airmass) * s.sky_e;
   if (f.nearest_moon_rad < beyond_kink_rad) {
     const double rises = patch_rad / f.nearest_moon_rad;
     missed_e += std::min(1.0, 1.3 * patch_rad + rises * rises) * f.moonlight_e(s);
@@ -160,7 +160,7 @@ double SkyGrid::cost_s(int level, const PlanFacts& f) {
 }
 
 int PsfWavelengths::wavelengths(int level, const PlanFacts& f) {
-  return std::max(count[std::size_t(level)], f.least_wavelengths);
+  return std::max(count[std::size_t(level)], f.min_wavelengths);
 }
 
 double PsfWavelengths::cost_s(int level, const PlanFacts& f) {
@@ -184,7 +184,7 @@ ErrorBound PsfWavelengths::error(int level, const PlanFacts& f) {
           ? std::max(speckles_in_noise(level, f, f.brightest_star_e, 0.0),
                      speckles_in_noise(level, f, f.brightest_object_e, f.narrowest_object_px))
           : rings_in_noise(n, f, f.brightest_e());
-  const double light_e = beside_sources * f.least_noise_e();
+  const double light_e = beside_sources * f.min_noise_e();
   const ErrorBound beside = f.without_light([&](const SkySample&) { return light_e; });
   error.background_sigma = beside.background_sigma;
   error.noise = beside.noise;
@@ -201,15 +201,15 @@ ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   if (!(left_e > 0.0 || starlight_e > 0.0)) return beyond;
   // The brightest star that is left out, in its brightest pixel; and the smooth starlight that
   // stands for all of them.
-  const double star = f.peak_in_noise(left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e(),
-                                      f.star_trail_px);
-  const double light_e = std::max(star * f.least_noise_e(), starlight_e);
+  const double star =
+      f.peak_in_noise(left_e * f.pattern_share(f.star_trail_px) / f.min_noise_e(), f.star_trail_px);
+  const double light_e = std::max(star * f.min_noise_e(), starlight_e);
   ErrorBound error = f.without_light([&](const SkySample&) { return light_e; });
   // In the capsule of a source that counts.
   const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());
   error.photometry_mag = 1.086 * share;
   // One that would count itself.
-  if (left_e * f.pattern_share(f.star_trail_px) >= PlanFacts::least_snr * f.least_noise_e())
+  if (left_e * f.pattern_share(f.star_trail_px) >= PlanFacts::min_snr * f.min_noise_e())
     error.photometry_mag = unbounded;
   error.position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px);
   return error + beyond;
@@ -217,7 +217,7 @@ ErrorBound StarBackground::error(int level, const PlanFacts& f) {
 
 bool SyntheticBackground::is_seen(double signal_e, const PlanFacts& f) {
   constexpr double seen_snr = 2.5;
-  return signal_e * f.pattern_share(f.star_trail_px) / f.least_noise_e() >= seen_snr;
+  return signal_e * f.pattern_share(f.star_trail_px) / f.min_noise_e() >= seen_snr;
 }
 
 int SyntheticBackground::whole_level(const PlanFacts& f) {

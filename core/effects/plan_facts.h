@@ -73,7 +73,7 @@ struct PlanFacts {
   double dark_e = 0.0, read_noise_e = 0.0;
   bool read_later = false;  // its noise is drawn after effects that take charge only
   // The air.
-  double most_airmass = 1.0, zenith_extinction_mag = 0.0;
+  double max_airmass = 1.0, zenith_extinction_mag = 0.0;
   double gas_mag = 0.0;         // absorption of sunlight by gases at the largest airmass
   double scintillation = 0.0;   // deviation of a source's light at the largest airmass
   double refraction_rad = 0.0;  // largest in the field
@@ -88,7 +88,7 @@ struct PlanFacts {
   double stray_light_e = 0.0;     // of a pixel
   double thermal_optics_e = 0.0;  // of the brightest pixel
   double limb_airglow_e = 0.0, limb_air_e = 0.0;  // of the brightest pixel of the Earth's limb
-  double least_illumination = 1.0;                // by vignetting
+  double min_illumination = 1.0;                  // by vignetting
   double illumination_slope_per_px = 0.0;         // steepest, relative, of a vignetting by a table
   // What the sensor does not know of itself.
   double pointing_error_rad = 0.0;  // largest displacement in the field
@@ -128,7 +128,7 @@ struct PlanFacts {
   AirFacts air;
   // The blur.
   static constexpr double transform_pixel_s = 2e-9;
-  int least_wavelengths = 1;    // of the band, by the camera
+  int min_wavelengths = 1;      // of the band, by the camera
   bool kernels_change = false;  // with every exposure
   double kernel_s = 0.0;        // of all kernels of one wavelength
   /// Largest differences between the kernels of each level of `psf_field` and the true blur of a
@@ -146,13 +146,13 @@ struct PlanFacts {
     return std::size_t(std::clamp(v_mag, 0.0, double(star_limits) - 1.0));
   }
   double stars_to(double v_mag) const { return v_mag < 0.0 ? 0.0 : stars_brighter[limit(v_mag)]; }
-  double least_noise_e() const {
+  double min_noise_e() const {
     double least = unbounded;
     for (const auto& s : sky) least = std::min(least, s.noise_e);
     return sky.empty() ? 1.0 : least;
   }
   /// Returns `light_e` in units of the smallest noise of a pixel.
-  double in_noise(double light_e) const { return light_e / least_noise_e(); }
+  double in_noise(double light_e) const { return light_e / min_noise_e(); }
   double sigma_px() const { return std::hypot(fwhm_px / 2.355, 0.29); }
   /// Returns the root of the sum of squares of the shares that pixels have of the light of a source
   /// with a trail of `trail_px`. The signal-to-noise ratio of a source is that times its light over
@@ -162,7 +162,7 @@ struct PlanFacts {
     return std::min(1.0, std::sqrt(0.2821 / sigma / std::max(trail_px, 3.545 * sigma)));
   }
   /// Returns the light of the faintest source whose photometry and position count.
-  double faintest_source_e() const { return least_snr * least_noise_e() / pattern_share(); }
+  double faintest_source_e() const { return min_snr * min_noise_e() / pattern_share(); }
   /// Returns the light in the brightest pixel of a source, in units of the pixel's noise; `snr`: of
   /// its whole light.
   double peak_in_noise(double snr, double trail_px) const {
@@ -174,7 +174,7 @@ struct PlanFacts {
   /// Returns the relative error of a pixel's noise by an error of its light, in units of the noise.
   /// The noise is taken as no less than one electron.
   double noise_of(double background_sigma) const {
-    const double noise_e = least_noise_e();
+    const double noise_e = min_noise_e();
     return std::min(1.0, 0.5 * background_sigma * std::max(1.0, noise_e) / (noise_e * noise_e));
   }
   /// Error of sources that are misplaced by an angle, with what their faint edges leave beside
@@ -196,7 +196,7 @@ struct PlanFacts {
   /// are too faint for photometry.
   ErrorBound dimmed_by(double magnitude) const {
     const double trail_px = faint_objects ? 0.0 : star_trail_px;
-    const double background_sigma = peak_in_noise(least_snr, trail_px) * std::min(1.0, magnitude);
+    const double background_sigma = peak_in_noise(min_snr, trail_px) * std::min(1.0, magnitude);
     return {.photometry_mag = magnitude,
             .background_sigma = background_sigma,
             .noise = noise_of(background_sigma)};
@@ -258,7 +258,7 @@ struct PlanFacts {
   double brightest_e() const { return std::max(brightest_star_e, brightest_object_e); }
 
   /// Least signal-to-noise ratio of a source that counts, and of one that is not background.
-  static constexpr double least_snr = 5.0, least_snr_of_source = 0.5;
+  static constexpr double min_snr = 5.0, min_snr_of_source = 0.5;
   /// Largest share of a source's light that a neighbour may have in its aperture: with more the
   /// source does not count.
   static constexpr double neighbour_share = 0.002;
@@ -293,8 +293,7 @@ struct PlanFacts {
     const double centroid_px = std::min(px + 1.0, px * centroid_slope(blur_px));
     // Beside sources that count there is light of their rings alone, which go from dark to bright
     // in half of their distance.
-    const double peak =
-        faint || scene.diffracts ? peak_in_noise(least_snr_of_source, trail_px) : 0.0;
+    const double peak = faint || scene.diffracts ? peak_in_noise(min_snr_of_source, trail_px) : 0.0;
     const double rings = scene.diffracts ? std::min(1.0, 2.0 * ring_contrast) : 0.0;
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +

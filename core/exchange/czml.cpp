@@ -13,7 +13,7 @@ namespace {
 
 constexpr double field_length_m = 1.5e6;  // of a pyramid's edges
 constexpr double longest_gap_s = 600.0;   // between states that one pass joins
-constexpr std::size_t most_fields = 200;  // of a sensor
+constexpr std::size_t max_fields = 200;   // of a sensor
 
 using Colour = std::array<int, 3>;
 
@@ -207,7 +207,7 @@ std::string czml_text(const ExportRequest& request) {
       states.push_back({f->middle, f->sensor_position_m, f->sensor_velocity_m_per_s});
     if (!sensor.site && states.empty()) continue;
     document.sensor(sensor, states);
-    const std::size_t every = own.size() / most_fields + 1;
+    const std::size_t every = own.size() / max_fields + 1;
     for (std::size_t k = 0; k < own.size(); k += every)
       if (own[k]->wcs)
         document.field(*own[k], sensor,

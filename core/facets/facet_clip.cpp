@@ -7,7 +7,7 @@ namespace {
 
 using Point = FacetPiece::Point;
 
-constexpr double least_share = 1e-12;
+constexpr double min_share = 1e-12;
 constexpr double touching = 1e-12;  // of the facet's edges
 
 /// Distance of `p` to the left of the line from `a` along the unit direction (ds, dt).
@@ -48,7 +48,7 @@ bool apart(std::span<const Point> hole, const FacetPiece& piece) {
 FacetPiece side(const FacetPiece& piece, const Line& line, double sign) {
   FacetPiece part;
   const auto add = [&](const Point& p) {
-    if (part.corners < FacetPiece::most_corners) part.corner[part.corners++] = p;
+    if (part.corners < FacetPiece::max_corners) part.corner[part.corners++] = p;
   };
   for (int i = 0; i < piece.corners; ++i) {
     const Point &a = piece.corner[i], &b = piece.corner[(i + 1) % piece.corners];
@@ -64,8 +64,8 @@ FacetPiece side(const FacetPiece& piece, const Line& line, double sign) {
 
 /// Appends a piece, halved first if it has no room for one more corner.
 void add_piece(const FacetPiece& piece, std::vector<FacetPiece>& pieces) {
-  if (area_share(piece) < least_share) return;
-  if (piece.corners + 1 < FacetPiece::most_corners) {
+  if (area_share(piece) < min_share) return;
+  if (piece.corners + 1 < FacetPiece::max_corners) {
     pieces.push_back(piece);
     return;
   }

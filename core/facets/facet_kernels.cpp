@@ -6,7 +6,7 @@ namespace dmise::DMISE_SIMD {
 namespace {
 
 constexpr double four_pi = 12.566370614359172;
-constexpr double least_cosine = 0.02;  // least_cos_out of core/materials/brdf.h
+constexpr double min_cosine = 0.02;  // min_cos_out of core/materials/brdf.h
 
 DMISE_INLINE F64 along(const FacetArrays& f, std::size_t i, const double* direction) {
   return load<F64>(f.normal_x + i) * direction[0] + load<F64>(f.normal_y + i) * direction[1] +
@@ -26,7 +26,7 @@ DMISE_INLINE F64 light(const FacetArrays& f, std::size_t i, const FacetDirection
   const F64 d = one - e2, d_in = d * in;
   const F64 norm = d_in + (e2 + e2 + d_in * d_in) / sqrt(d_in * d_in + 4.0 * e2);  // 2 e^2 H
   const F64 specular = max(zero, one - load<F64>(f.taken + i) * falloff_in);
-  const F64 fade = min(one, out * (1.0 / least_cosine));
+  const F64 fade = min(one, out * (1.0 / min_cosine));
   const F64 reflected = load<F64>(f.diffuse + i) * falloff_in * falloff_out * out +
                         specular * fade * (e2 + e2) / (four_pi * norm * root * root);
   const F64 all = load<F64>(f.area_m2 + i) * in * reflected;

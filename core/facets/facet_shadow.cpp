@@ -7,7 +7,7 @@ namespace dmise {
 namespace {
 
 /// Facets with a smaller cosine cast no shadow.
-constexpr double least_cosine = 1e-9;
+constexpr double min_cosine = 1e-9;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ FacetShadow::FacetShadow(const Mesh& mesh, const Vec<Body>& direction)
   cell_begin_.assign(std::size_t(side_) * std::size_t(side_) + 1, 0);
   const auto for_cells = [&](auto&& work) {
     for (std::size_t f = 0; f < count; ++f) {
-      if (cosine_[f] <= least_cosine) continue;
+      if (cosine_[f] <= min_cosine) continue;
       const auto [c0, r0, c1, r1] = cells_of(box_[f]);
       for (int r = r0; r <= r1; ++r)
         for (int c = c0; c <= c1; ++c)
@@ -117,7 +117,7 @@ bool FacetShadow::may_be_hidden(std::size_t facet) const {
 }
 
 void FacetShadow::cut(std::size_t facet, std::vector<FacetPiece>& pieces) const {
-  if (cosine_[facet] <= least_cosine) return;
+  if (cosine_[facet] <= min_cosine) return;
   const auto& corner = mesh_.triangles[facet].corner;
   const Vec<Body> origin = mesh_.vertex_m[corner[0]];
   const Vec<Body> e1 = mesh_.vertex_m[corner[1]] - origin, e2 = mesh_.vertex_m[corner[2]] - origin;

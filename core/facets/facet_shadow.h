@@ -19,8 +19,8 @@ struct FacetPiece {
   struct Point {
     double s, t;
   };
-  static constexpr int most_corners = 12;
-  std::array<Point, most_corners> corner;
+  static constexpr int max_corners = 12;
+  std::array<Point, max_corners> corner;
   int corners = 0;
 
   static FacetPiece whole() { return {{{{0, 0}, {1, 0}, {0, 1}}}, 3}; }

@@ -8,9 +8,9 @@
 namespace dmise {
 namespace {
 
-constexpr double most_points = 5e7;   // over all facets
-constexpr double most_normals = 2e6;  // of height maps, over all facets
-constexpr int most_bins = 16;         // of a facet's slopes along each axis
+constexpr double max_points = 5e7;   // over all facets
+constexpr double max_normals = 2e6;  // of height maps, over all facets
+constexpr int max_bins = 16;         // of a facet's slopes along each axis
 
 /// Weights of red, green and blue in the material's reflectance in the band.
 std::array<float, 3> weights_of(const Material& material, const Band& band) {
@@ -72,20 +72,20 @@ class Facet {
     double area = 0.0;
     for (const auto& map : {material_.colour_map, material_.slope_map})
       if (map) area = std::max(area, texels(triangle_, *map));
-    bins_ = std::clamp(int(std::sqrt(most_normals / double(facets_with_pictures))), 2, most_bins);
-    const double most = std::clamp(most_points / double(facets_with_pictures), 64.0, 65536.0);
+    bins_ = std::clamp(int(std::sqrt(max_normals / double(facets_with_pictures))), 2, max_bins);
+    const double most = std::clamp(max_points / double(facets_with_pictures), 64.0, 65536.0);
     const auto points = std::size_t(std::clamp(64.0 * area, std::min(4096.0, most), most));
     std::vector<Bin> bin(std::size_t(bins_ * bins_));
-    std::array<float, 2> least{}, most_slope{};
-    if (material_.slope_map) slope_range(points, least, most_slope);
+    std::array<float, 2> least{}, max_slope{};
+    if (material_.slope_map) slope_range(points, least, max_slope);
     double colours = 0.0;
     for (std::size_t p = 0; p < points; ++p) {
       const double colour = colour_at(p);
       colours += colour;
       if (!material_.slope_map) continue;
       const auto slope = slope_at(p);
-      Bin& b = bin[std::size_t(bin_of(slope[0], least[0], most_slope[0]) * bins_ +
-                               bin_of(slope[1], least[1], most_slope[1]))];
+      Bin& b = bin[std::size_t(bin_of(slope[0], least[0], max_slope[0]) * bins_ +
+                               bin_of(slope[1], least[1], max_slope[1]))];
       b.normal += normal(slope);
       b.colour += colour;
       b.count += 1.0;

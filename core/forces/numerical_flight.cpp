@@ -15,7 +15,7 @@ constexpr int knots_of_polynomial = 6;  // Hermite, degree 11
 constexpr double longest_turn =
     0.35;  // of a step, in sqrt(r^3 / gm): polynomials are good to 1e-6 m
 constexpr double shortest_step_s = 1e-6;
-constexpr int most_steps = 5'000'000;
+constexpr int max_steps = 5'000'000;
 constexpr double beyond_edge_s = 1e-3;  // a step ends that far beyond the edge of a shadow
 
 /// Position at share `u` of a step, by the cubic through both ends.
@@ -42,7 +42,7 @@ class Piece {
         whole_s < 0.006 * turn_s(point) ? whole_s : whole_s / (knots_of_polynomial + 1);
     double length_s = std::min(longest_s, 0.05 * turn_s(point));
     for (int count = 0; sense * (to_s - point.time_s) > 0; ++count) {
-      if (count == most_steps) return FlightEnd{point.time_s, "it takes too many steps"};
+      if (count == max_steps) return FlightEnd{point.time_s, "it takes too many steps"};
       length_s = std::min({length_s, longest_s, longest_turn * turn_s(point)});
       const double left_s = std::fabs(to_s - point.time_s);
       const bool last = length_s >= left_s * (1 - 1e-9);

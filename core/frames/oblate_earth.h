@@ -26,9 +26,9 @@ inline OblateEarth oblate_earth(const EarthOrientation& earth, const Ellipsoid& 
 /// must be.
 inline bool is_above_ground(const Vec<Gcrs>& position_m, const EarthOrientation& earth,
                             const Ellipsoid& ellipsoid) {
-  constexpr double least_height_m = 1.0;
+  constexpr double min_height_m = 1.0;
   const OblateEarth body = oblate_earth(earth, ellipsoid);
-  return norm(body.stretched(position_m)) > body.ellipsoid.equatorial_radius_m + least_height_m;
+  return norm(body.stretched(position_m)) > body.ellipsoid.equatorial_radius_m + min_height_m;
 }
 
 }  // namespace dmise

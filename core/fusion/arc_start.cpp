@@ -14,9 +14,9 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_per_exposure = 16;  // the brightest
-constexpr std::size_t most_fits = 2;           // of one tick, each some 30 ms
-constexpr int most_skipped = 3;                // exposures in a row in which it was not found
+constexpr std::size_t max_per_exposure = 16;  // the brightest
+constexpr std::size_t max_fits = 2;           // of one tick, each some 30 ms
+constexpr int max_skipped = 3;                // exposures in a row in which it was not found
 constexpr double shortest_arc_gap_s = 1.0;
 constexpr double fastest_rad_per_s = 0.035;  // 2 deg/s: 8 km/s at 230 km
 constexpr double arc_sigmas = 5.0;
@@ -26,7 +26,7 @@ constexpr double gravity_over_speed = 9.8 / 3000.0, range_rate_over_range = 0.00
 constexpr double most_by_chance = 1e-3;
 constexpr double largest_range_sigma = 0.1;  // of the range: a filter takes no wider ellipse
 constexpr double as_likely = 9.2;            // chi-square by which another orbit must be worse
-constexpr OrbitLimits limits{.least_perigee_m = 6.45e6, .largest_apogee_m = 1e8};
+constexpr OrbitLimits limits{.min_perigee_m = 6.45e6, .largest_apogee_m = 1e8};
 
 /// Of one sensor's sources. Those of an exposure have each its own time where rows are exposed one
 /// after the other.
@@ -108,8 +108,7 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
     return {first, end};
   };
   std::vector<Arc> arcs;
-  for (std::size_t first = 0; first < std::min<std::size_t>(exposures.size(), most_skipped);
-       ++first)
+  for (std::size_t first = 0; first < std::min<std::size_t>(exposures.size(), max_skipped); ++first)
     for (const LooseSource& second : at(exposures[first])) {
       const double rate = angle_rad(seen(last).direction, seen(second).direction) /
                           (seen(last).time - seen(second).time).seconds();
@@ -117,7 +116,7 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
       Arc arc{&last, &second};
       int skipped = 0;
       double chance = double(at(exposures[first]).size()) * double(first + 1);
-      for (std::size_t k = first + 1; k < exposures.size() && skipped <= most_skipped; ++k) {
+      for (std::size_t k = first + 1; k < exposures.size() && skipped <= max_skipped; ++k) {
         const LooseSource* best = nullptr;
         Continued expected;  // where the best is
         double best_d2 = 1.0;
@@ -177,7 +176,7 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
     for (LooseSource& s : found) {
       of_exposure = s.frame == exposure && of_exposure > 0 ? of_exposure + 1 : 1;
       exposure = s.frame;
-      if (of_exposure <= most_per_exposure) kept.push_back(std::move(s));
+      if (of_exposure <= max_per_exposure) kept.push_back(std::move(s));
     }
     std::ranges::sort(kept, [](const auto& a, const auto& b) { return order(a) < order(b); });
     const SimTime newest = seen(kept.back()).time;
@@ -206,7 +205,7 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
     if (std::ranges::any_of(arc,
                             [&](const auto& s) { return used.contains(seen(s).detection_id); }))
       continue;
-    if (fits++ == most_fits) break;
+    if (fits++ == max_fits) break;
     if (auto orbit = orbit_of(arc)) {
       for (const LooseSource& s : arc) used.insert(seen(s).detection_id);
       orbits.push_back(std::move(*orbit));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double coarse_sigmas = 5.0;       // of the coarse search
 constexpr double largest_radius_rad = 0.2;  // tracks that are known worse are not looked for
-constexpr double least_radius_rad = 1e-4;
+constexpr double min_radius_rad = 1e-4;
 constexpr double earth_m = 6.35e6;
 constexpr double edge_px = 4.0;             // within which a source may be missed
 constexpr double least_looked = 0.05;       // probability of detection that makes a look
@@ -40,7 +40,7 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
   const double cos_field = std::cos(std::min(pi, frame.half_angle_rad + largest_radius_rad));
   const auto take = [&](Candidate& candidate, double sigma_rad) {
     candidate.sigma_rad = sigma_rad;
-    candidate.radius_rad = coarse_sigmas * (sigma_rad + seen_sigma) + least_radius_rad;
+    candidate.radius_rad = coarse_sigmas * (sigma_rad + seen_sigma) + min_radius_rad;
     if (candidate.radius_rad > largest_radius_rad) return false;
     if (!behind_earth(frame.sensor_m, candidate.direction, candidate.range_m))
       out.push_back(candidate);

@@ -142,11 +142,11 @@ void Fusion::begin_from_arcs(const std::vector<LooseSource>& loose) {
       begin(orbit, int(orbit.sources.size()) + settings_.confirm_arc);
 }
 
-void Fusion::begin(const StartedOrbit& orbit, int least_detections) {
+void Fusion::begin(const StartedOrbit& orbit, int min_detections) {
   if (!OrbitFilter::can_start(orbit.fit.estimate)) return;
   auto track = std::make_unique<LiveTrack>(
       next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
-  track->least_detections = least_detections;
+  track->min_detections = min_detections;
   std::vector<std::string> taken;
   for (const LooseSource& s : orbit.sources) {
     taken.push_back(seen(s).detection_id);
@@ -163,7 +163,7 @@ void Fusion::age(SimTime time) {
   for (const auto& track : tracks_) {
     const double unseen_s = (time - track->last_seen).seconds();
     const bool tentative = track->status == TrackStatus::tentative;
-    const int wanted = track->object ? settings_.confirm_catalogued : track->least_detections;
+    const int wanted = track->object ? settings_.confirm_catalogued : track->min_detections;
     if (track->existence() < gone ||
         unseen_s > (tentative ? settings_.tentative_s : settings_.lost_after_s)) {
       track->status = TrackStatus::lost;

@@ -57,7 +57,7 @@ class Fusion {
   LiveTrack* begin_catalogued(std::size_t object, SimTime seen);
   void begin_unknown(const std::vector<LooseSource>& loose);
   void begin_from_arcs(const std::vector<LooseSource>& loose);
-  void begin(const StartedOrbit& orbit, int least_detections);
+  void begin(const StartedOrbit& orbit, int min_detections);
   bool is_known(const OrbitEstimate& estimate) const;
   void take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
                  std::vector<std::string>& taken);

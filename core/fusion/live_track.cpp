@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_log_odds = 12.0;  // a long track is given up within a dozen looks, too
+constexpr double max_log_odds = 12.0;  // a long track is given up within a dozen looks, too
 constexpr double standard_range_m = 1e6;
 
 }  // namespace
@@ -58,7 +58,7 @@ bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,
   if (!found) return false;
   const double p = detection_probability;
   log_odds =
-      std::min(most_log_odds,
+      std::min(max_log_odds,
                log_odds + std::log(1 - p + p * std::exp(found->log_likelihood) / false_per_sr));
   innovation_d2 = found->d2;
   count(observation, magnitude_seen, filter.estimate().state.position_m);
@@ -67,7 +67,7 @@ bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,
 }
 
 void LiveTrack::miss(double detection_probability) {
-  log_odds = std::max(-most_log_odds, log_odds + std::log1p(-detection_probability));
+  log_odds = std::max(-max_log_odds, log_odds + std::log1p(-detection_probability));
 }
 
 Track published(const LiveTrack& track, SimTime time) {

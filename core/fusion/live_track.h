@@ -30,7 +30,7 @@ struct LiveTrack {
   std::uint32_t id;
   OrbitFilter filter;
   std::optional<std::size_t> object;  // index in the catalogue
-  int least_detections = 0;           // that confirm it
+  int min_detections = 0;             // that confirm it
   TrackStatus status = TrackStatus::tentative;
   double log_odds = 0.0;  // of its existence
   int detections = 0;

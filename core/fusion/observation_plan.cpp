@@ -15,11 +15,11 @@ namespace dmise {
 namespace {
 
 const PropagationSettings propagation{.position_tolerance_m = 1e-2};
-constexpr int most_turns = 12;             // of the time of the slew and where it leads
+constexpr int max_turns = 12;              // of the time of the slew and where it leads
 constexpr double settled_within_s = 1e-3;  // between two of them
 constexpr double least_lit = 0.5;          // fraction of the Sun's disc
 constexpr double path_step_s = 10.0;       // cubic: to 3 mm
-constexpr double most_path_points = 1000;
+constexpr double max_path_points = 1000;
 constexpr std::string_view too_fast = "it is faster than the mount";
 
 struct Place {
@@ -44,7 +44,7 @@ std::string_view obstacle_of(const CueSky& sky, const CueSettings& cue, const Pl
                              const OrbitState& state) {
   const Vec<Gcrs> line = line_to(state, place.sensor_m), direction = unit(line);
   const double height = (place.enu_from_gcrs * direction).z;
-  if (height < std::sin(cue.least_elevation_deg * deg)) return "it is below the least elevation";
+  if (height < std::sin(cue.min_elevation_deg * deg)) return "it is below the least elevation";
   if (cue.greatest_elevation_deg < 90 && height > std::sin(cue.greatest_elevation_deg * deg))
     return "it is above the greatest elevation";
   if (angle_rad(direction, sky.bodies.sun_m - place.sensor_m) < cue.sun_exclusion_deg * deg)
@@ -123,7 +123,7 @@ Outcome<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces, cons
   OrbitState state = target.estimate.state;
   MountPosition mount;
   bool settled = false;
-  for (int turn = 0; turn < most_turns && !settled; ++turn) {
+  for (int turn = 0; turn < max_turns && !settled; ++turn) {
     const auto moved = propagate(forces, state, plan.on_target, propagation);
     if (!moved) return refused(moved.reason);
     state = *moved;
@@ -247,7 +247,7 @@ double gain_nats(const OrbitEstimate& estimate, const Matrix6& known, const Matr
 
 void put_path(const ForceModel& forces, const OrbitState& state, SimTime from, SimTime to,
               Task& task) {
-  task.path_step_s = std::max(path_step_s, (to - from).seconds() / most_path_points);
+  task.path_step_s = std::max(path_step_s, (to - from).seconds() / max_path_points);
   task.path_start = from;
   OrbitState point = state;
   for (SimTime t = from;; t = t + sim_seconds(task.path_step_s)) {

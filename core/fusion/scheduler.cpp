@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_plans = 24;  // of a sensor at once: the best by `rough_rate`
+constexpr std::size_t max_plans = 24;  // of a sensor at once: the best by `rough_rate`
 constexpr int heard_after_ticks = 2;
 constexpr double path_margin_s = 10.0;  // before and after exposures, for clocks that are wrong
 
@@ -39,7 +39,7 @@ std::vector<Scheduler::Option> Scheduler::options(const CueSky& sky, const Mount
   std::ranges::sort(rough, [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first > b.first : a.second->track < b.second->track;
   });
-  if (rough.size() > most_plans) rough.resize(most_plans);
+  if (rough.size() > max_plans) rough.resize(max_plans);
   std::vector<Option> out;
   for (const auto& [rate, target] : rough)
     if (auto plan = plan_observation(forces_, sky, mount.sensor, *target, mount.position, start,
@@ -107,8 +107,7 @@ Task Scheduler::task_of(const Mount& mount, const std::vector<Option>& options, 
             .detection_probability = plan.detection_probability,
             .gain_nats = best.gain_nats,
             .gain_nats_per_s = best.rate()};
-  for (const Option& o : options)
-    task.candidates += o.gain_nats >= mount.sensor.cue.least_gain_nats;
+  for (const Option& o : options) task.candidates += o.gain_nats >= mount.sensor.cue.min_gain_nats;
   if (options.size() > 1) {
     task.runner_up = options[1].target->track;
     task.runner_up_nats_per_s = options[1].rate();
@@ -151,7 +150,7 @@ std::vector<Task> Scheduler::step(SimTime now, SimTime begin, SimTime next,
   for (;;) {
     std::erase_if(free, [&](const Free& f) {
       return f.options.empty() ||
-             (!wishes && (f.options.front().gain_nats < f.mount->sensor.cue.least_gain_nats ||
+             (!wishes && (f.options.front().gain_nats < f.mount->sensor.cue.min_gain_nats ||
                           !(f.options.front().gain_nats > 0)));
     });
     if (free.empty()) break;

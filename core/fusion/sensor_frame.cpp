@@ -11,12 +11,12 @@ namespace {
 constexpr double limit_width_mag = 0.5;  // standard deviation of the fall at the limit
 /// Least standard deviation of a direction: bright sources in images are known better than star
 /// catalogues, clocks and refraction, and than a filter is linear that knew a kilometre before.
-constexpr double least_sigma_rad = 0.2 * arcsec;
+constexpr double min_sigma_rad = 0.2 * arcsec;
 
 /// Raises both axes of an ellipse to the least; leaves what is wider as it is, to the bit.
 void widen(std::array<double, 3>& covariance) {
   auto& [e, c, n] = covariance;
-  const double least = least_sigma_rad * least_sigma_rad;
+  const double least = min_sigma_rad * min_sigma_rad;
   const double mean = (e + n) / 2, half = std::hypot((e - n) / 2, c);
   if (mean - half >= least) return;
   const double large = std::max(mean + half, least);

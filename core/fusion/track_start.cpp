@@ -11,9 +11,9 @@
 namespace dmise {
 namespace {
 
-constexpr double least_baseline_m = 10e3;
-constexpr double shortest_gap_s = 1.0;      // between two places of one orbit
-constexpr double least_perigee_m = 6.45e6;  // 70 km above the ground
+constexpr double min_baseline_m = 10e3;
+constexpr double shortest_gap_s = 1.0;    // between two places of one orbit
+constexpr double min_perigee_m = 6.45e6;  // 70 km above the ground
 constexpr double largest_apogee_m = 1e8;
 constexpr double start_sigmas = 4.0;     // of coarse tests
 constexpr double longest_miss_m = 50e3;  // of two lines
@@ -26,7 +26,7 @@ auto order(const LooseSource& s) {
 /// Whether two lines pass each other closely, at a height of an orbit: cheap, for most do not.
 bool may_meet(const AngleObservation& a, const AngleObservation& b) {
   const Vec<Gcrs> base = b.sensor_m - a.sensor_m;
-  if (norm(base) < least_baseline_m) return false;
+  if (norm(base) < min_baseline_m) return false;
   const double c = dot(a.direction, b.direction), s2 = 1 - c * c;
   if (s2 < 1e-8) return false;
   const double ab = dot(base, a.direction), bb = dot(base, b.direction);
@@ -34,7 +34,7 @@ bool may_meet(const AngleObservation& a, const AngleObservation& b) {
   if (!(range_a > 0) || !(range_b > 0)) return false;
   const Vec<Gcrs> at_a = a.sensor_m + a.direction * range_a;
   const Vec<Gcrs> at_b = b.sensor_m + b.direction * range_b;
-  if (norm(at_a) < least_perigee_m || norm(at_a) > largest_apogee_m) return false;
+  if (norm(at_a) < min_perigee_m || norm(at_a) > largest_apogee_m) return false;
   const double moved_m = 8e3 * std::fabs((a.time - b.time).seconds());
   const double sigma_m = std::hypot(range_a * sigma_rad(a), range_b * sigma_rad(b));
   return norm(at_a - at_b) < std::min(longest_miss_m, start_sigmas * sigma_m + moved_m);
@@ -71,12 +71,12 @@ bool TrackStart::may_be_one(const Place& from, const Place& to) const {
   // The most circular velocity within the errors.
   const Vec<Gcrs> up = r / distance;
   const double radial = dot(v, up);
-  const double least_radial = std::max(0.0, std::fabs(radial) - sigma);
+  const double min_radial = std::max(0.0, std::fabs(radial) - sigma);
   const Vec<Gcrs> level = v - up * radial;
   const double circular = escape / std::sqrt(2.0), across = norm(level);
   const double best = across + std::clamp(circular - across, -sigma, sigma);
-  OrbitState state{to.where.time, r, level * (best / std::max(across, 1e-9)) + up * least_radial};
-  return perigee_m(state) > least_perigee_m && apogee_m(state) < largest_apogee_m;
+  OrbitState state{to.where.time, r, level * (best / std::max(across, 1e-9)) + up * min_radial};
+  return perigee_m(state) > min_perigee_m && apogee_m(state) < largest_apogee_m;
 }
 
 std::vector<StartedOrbit> TrackStart::add(const std::vector<LooseSource>& sources) {
@@ -112,7 +112,7 @@ std::vector<StartedOrbit> TrackStart::add(const std::vector<LooseSource>& source
       const AngleObservation lines[] = {seen(from.a), seen(from.b), seen(to.a), seen(to.b)};
       auto fit = two_site_orbit(forces_, lines, triangulation);
       if (!fit || fit->chi2 > largest_chi2 || !is_sane(fit->estimate) ||
-          perigee_m(fit->estimate.state) < least_perigee_m ||
+          perigee_m(fit->estimate.state) < min_perigee_m ||
           apogee_m(fit->estimate.state) > largest_apogee_m)
         continue;
       orbits.push_back({std::move(*fit), {from.a, from.b, to.a, to.b}});

@@ -79,10 +79,10 @@ class CardReader {
                               [](const ProjectionCoefficient& c) -> std::string { return c.card; });
   }
   void illumination(MonotoneCubic& table, FieldRadius& radius) {
-    constexpr int most_rows = 1000;
+    constexpr int max_rows = 1000;
     int rows = 0;
     integer("VIGNROWS", rows, "");
-    if (rows < 1 || rows > most_rows) fail("VIGNROWS", "must be 1 to 1000");
+    if (rows < 1 || rows > max_rows) fail("VIGNROWS", "must be 1 to 1000");
     const std::string& unit = find("VIGNUNIT");
     if (unit != unit_text(FieldRadius::angle_deg) && unit != unit_text(FieldRadius::distance_px))
       fail("VIGNUNIT", "must be deg or px, got " + unit);

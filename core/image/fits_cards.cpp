@@ -12,9 +12,9 @@ namespace {
 
 void require_sense(const CardReader& v, const FrameHeader& h) {
   v.require(h.exposure_s > 0, "EXPTIME", "must be > 0");
-  constexpr std::int64_t most_ns = 4'000'000'000'000'000'000;  // differences are in 64 bits, too
-  v.require(h.start.ns >= -most_ns, "SIMT-BEG", "must be >= -4e18");
-  v.require(h.end.ns <= most_ns, "SIMT-END", "must be <= 4e18");
+  constexpr std::int64_t max_ns = 4'000'000'000'000'000'000;  // differences are in 64 bits, too
+  v.require(h.start.ns >= -max_ns, "SIMT-BEG", "must be >= -4e18");
+  v.require(h.end.ns <= max_ns, "SIMT-END", "must be <= 4e18");
   v.require(h.start <= h.middle && h.middle <= h.end, "SIMT-AVG", "must lie between start and end");
   v.require(h.gain_e_per_dn > 0, "GAIN", "must be > 0");
   v.require(h.read_noise_e >= 0, "RDNOISE", "must be >= 0");

@@ -20,7 +20,7 @@ namespace {
 
 constexpr long widest_side = 1 << 16;
 // Rice compresses 32 pixels to a few bits at best: a file that claims more is malicious.
-constexpr std::size_t most_pixels_per_byte = 128;
+constexpr std::size_t max_pixels_per_byte = 128;
 
 std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::string& name) {
   int bits = 0, axes = 0, type = 0;
@@ -44,7 +44,7 @@ std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::s
       throw ConfigError(name + ": NAXIS" + std::to_string(i + 1) + ": must be in 1..65536, got " +
                         std::to_string(side));
   }
-  if (std::size_t(shape[0]) * std::size_t(shape[1]) / most_pixels_per_byte > file_bytes)
+  if (std::size_t(shape[0]) * std::size_t(shape[1]) / max_pixels_per_byte > file_bytes)
     throw ConfigError(name + ": NAXIS1: the image is larger than the file can hold");
   return shape;
 }

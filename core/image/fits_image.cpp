@@ -11,11 +11,11 @@
 namespace dmise {
 namespace {
 
-constexpr int most_axes = 99;  // of CFITSIO
-constexpr int most_compressed_axes = 6;
-constexpr LONGLONG longest_side = 1 << 16, most_planes = 1 << 20;
+constexpr int max_axes = 99;  // of CFITSIO
+constexpr int max_compressed_axes = 6;
+constexpr LONGLONG longest_side = 1 << 16, max_planes = 1 << 20;
 // gzip compresses at best 1032 to 1: a file that claims more is malicious.
-constexpr double most_bytes_per_byte = 1040;
+constexpr double max_bytes_per_byte = 1040;
 
 std::string_view require_fits(std::string_view bytes, const std::string& name) {
   if (!bytes.starts_with("SIMPLE  =")) throw ConfigError(name + ": SIMPLE: not a FITS file");
@@ -55,13 +55,13 @@ void FitsImage::find_image() {
 
 void FitsImage::read_shape() {
   int axes = 0;
-  std::array<LONGLONG, most_axes> sides{};
+  std::array<LONGLONG, max_axes> sides{};
   fits_get_img_dim(fits_.file, &axes, &fits_.status);
   const bool compressed = fits_is_compressed_image(fits_.file, &fits_.status) != 0;
-  const int most = compressed ? most_compressed_axes : most_axes;
+  const int most = compressed ? max_compressed_axes : max_axes;
   if (fits_.status == 0 && axes > most)
     fail("NAXIS: must be at most " + std::to_string(most) + ", got " + std::to_string(axes));
-  fits_get_img_paramll(fits_.file, most_axes, &bitpix_, &axes, sides.data(), &fits_.status);
+  fits_get_img_paramll(fits_.file, max_axes, &bitpix_, &axes, sides.data(), &fits_.status);
   if (fits_.status != 0) fail("is not an image: " + fits_.reason());
   std::array<int, 3> shape{1, 1, 1};
   std::size_t used = 0;
@@ -70,7 +70,7 @@ void FitsImage::read_shape() {
     const std::string key = "NAXIS" + std::to_string(i + 1);
     if (side == 1 && i >= 2) continue;
     if (used == 3) fail(key + ": a fourth axis must be 1 long, got " + std::to_string(side));
-    const LONGLONG longest = used < 2 ? longest_side : most_planes;
+    const LONGLONG longest = used < 2 ? longest_side : max_planes;
     if (side < 1 || side > longest)
       fail(key + ": must be in 1.." + std::to_string(longest) + ", got " + std::to_string(side));
     shape[used++] = int(side);
@@ -87,7 +87,7 @@ void FitsImage::require_data(bool compressed) {
   if (fits_.status != 0) throw ConfigError(name_ + ": not a FITS file: " + fits_.reason());
   require_bytes(bytes_, std::size_t(end), name_);
   const double bytes = double(columns_) * rows_ * planes_ * std::abs(bitpix_) / 8;
-  if (bytes > double(bytes_.size()) * (compressed ? most_bytes_per_byte : 1.0))
+  if (bytes > double(bytes_.size()) * (compressed ? max_bytes_per_byte : 1.0))
     fail("NAXIS1: the image is larger than the file can hold");
 }
 

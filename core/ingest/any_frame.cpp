@@ -28,8 +28,8 @@ constexpr double largest_value = 1e30;  // of a pixel; more is no light
 
 /// Whether the header is one of this program: a keyword that others do not have.
 bool is_own(std::string_view bytes) {
-  constexpr std::size_t most_header_bytes = 200 * fits_block_bytes;
-  const std::size_t end = std::min(bytes.size(), most_header_bytes);
+  constexpr std::size_t max_header_bytes = 200 * fits_block_bytes;
+  const std::size_t end = std::min(bytes.size(), max_header_bytes);
   for (std::size_t at = 0; at + fits_card_bytes <= end; at += fits_card_bytes)
     if (bytes.substr(at, 10) == "SIMT-BEG= ") return true;
   return false;

@@ -9,8 +9,8 @@
 namespace dmise {
 namespace {
 
-constexpr int kind_mesh_px = 32;        // of one kind, which has every second pixel
-constexpr double least_response = 0.2;  // fainter ones would be noise alone
+constexpr int kind_mesh_px = 32;      // of one kind, which has every second pixel
+constexpr double min_response = 0.2;  // fainter ones would be noise alone
 
 }  // namespace
 
@@ -53,15 +53,15 @@ std::array<float, 4> ColourMosaic::levels_around(int column, int row) const {
 }
 
 void ColourMosaic::measure_responses(const std::array<double, 4>& noise) {
-  constexpr double least_snr = 20.0;  // of the four pixels of an evened block together
-  constexpr std::size_t least_sources = 10;
+  constexpr double min_snr = 20.0;  // of the four pixels of an evened block together
+  constexpr std::size_t min_sources = 10;
   constexpr int rounds = 12;
   double most = -HUGE_VAL;
   for (const double v : values_)
     if (std::isfinite(v)) most = std::max(most, v);
   double variance = 0.0;
   for (const double n : noise) variance += n * n;
-  const double least_light = least_snr * std::sqrt(variance);
+  const double min_light = min_snr * std::sqrt(variance);
   const int wide = columns_ / 2, high = rows_ / 2;
   using Light = std::array<double, 4>;
   const auto light_of = [&](int i, int j) {
@@ -79,7 +79,7 @@ void ColourMosaic::measure_responses(const std::array<double, 4>& noise) {
   for (int j = 1; j + 1 < high; ++j)
     for (int i = 1; i + 1 < wide; ++i) {
       const Light middle = light_of(i, j);
-      if (!(middle[0] + middle[1] + middle[2] + middle[3] > least_response * least_light)) continue;
+      if (!(middle[0] + middle[1] + middle[2] + middle[3] > min_response * min_light)) continue;
       auto& around = blocks.emplace_back();
       for (int k = 0; k < 9; ++k) around[std::size_t(k)] = light_of(i + k % 3 - 1, j + k / 3 - 1);
     }
@@ -100,18 +100,18 @@ void ColourMosaic::measure_responses(const std::array<double, 4>& noise) {
           light[kind] += even;
           sum += even;
         }
-      if (!(sums[4] > least_light) || !(sum > 0) || std::ranges::max(sums) > sums[4]) continue;
+      if (!(sums[4] > min_light) || !(sum > 0) || std::ranges::max(sums) > sums[4]) continue;
       ++sources;
       for (std::size_t kind = 0; kind < 4; ++kind)
         share[kind] += std::clamp(light[kind] / sum, 0.0, 1.0);
     }
-    if (sources < least_sources) return;
+    if (sources < min_sources) return;
     double mean = 0.0;
     for (std::size_t kind = 0; kind < 4; ++kind) {
       response[kind] *= 4 * share[kind] / double(sources);
       mean += response[kind] / 4;
     }
-    for (double& one : response) one = std::max(one / mean, least_response);
+    for (double& one : response) one = std::max(one / mean, min_response);
   }
   responses_ = response;
 }
@@ -130,7 +130,7 @@ std::vector<double> ColourMosaic::evened() const {
   return out;
 }
 
-double ColourMosaic::least_evened(double value) const {
+double ColourMosaic::min_evened(double value) const {
   const auto response = responses_.value_or(std::array{1.0, 1.0, 1.0, 1.0});
   const double mean = (median_[0] + median_[1] + median_[2] + median_[3]) / 4;
   double least = HUGE_VAL;

@@ -24,7 +24,7 @@ class ColourMosaic {
   /// The values as they were if all kinds had the mean sky and the mean response.
   std::vector<double> evened() const;
   /// The evened value that a value has, at the median sky, in the kind where it is the least.
-  double least_evened(double value) const;
+  double min_evened(double value) const;
   /// The pixels of each kind alone.
   const std::array<CountImage, 4>& kinds() const { return kinds_; }
   /// The map of their counts.

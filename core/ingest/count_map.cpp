@@ -13,7 +13,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_count = 65535.0;
+constexpr double max_count = 65535.0;
 constexpr double sigma_of_quartiles = 0.7413;  // of a normal distribution, over their distance
 
 /// At most about `most` of the values that are finite, evenly spread.
@@ -54,7 +54,7 @@ class SkyCells {
         in[cell_of(int(i % std::size_t(columns)), int(i / std::size_t(columns)))].push_back(
             values[i]);
     for (std::size_t c = 0; c < cells_.size(); ++c)
-      if (in[c].size() >= least_values)
+      if (in[c].size() >= min_values)
         cells_[c] = Sky{median_of(in[c]),
                         sigma_of_quartiles * (quantile_of(in[c], 0.75) - quantile_of(in[c], 0.25))};
     spread(values);
@@ -67,7 +67,7 @@ class SkyCells {
 
  private:
   static constexpr int size = 64;
-  static constexpr std::size_t least_values = 64;
+  static constexpr std::size_t min_values = 64;
 
   std::size_t cell_of(int x, int y) const {
     return std::size_t(y / size) * std::size_t(columns_) + std::size_t(x / size);
@@ -106,7 +106,7 @@ class SkyCells {
 };
 
 std::uint16_t rounded(double count) {
-  return std::uint16_t(std::lround(std::clamp(count, 0.0, most_count)));
+  return std::uint16_t(std::lround(std::clamp(count, 0.0, max_count)));
 }
 
 }  // namespace
@@ -125,9 +125,9 @@ double pixel_noise(std::span<const double> values, int columns) {
 }
 
 CountMap common_step(std::span<const double> values) {
-  constexpr std::size_t least_numbers = 4;  // that differ, of which a step can be told
+  constexpr std::size_t min_numbers = 4;  // that differ, of which a step can be told
   constexpr double sky_share = 0.5, share_on_step = 0.99;
-  std::vector<std::size_t> pixels(std::size_t(most_count) + 1, 0);
+  std::vector<std::size_t> pixels(std::size_t(max_count) + 1, 0);
   std::size_t finite = 0;
   for (const double v : values)
     if (std::isfinite(v)) ++finite, ++pixels[std::size_t(v)];
@@ -135,11 +135,11 @@ CountMap common_step(std::span<const double> values) {
   for (std::size_t v = 0; v < pixels.size(); ++v)
     if (pixels[v] > 0) numbers.push_back(v);
   std::ranges::stable_sort(numbers, std::greater(), [&](std::size_t v) { return pixels[v]; });
-  if (numbers.size() < least_numbers) return {};
+  if (numbers.size() < min_numbers) return {};
   // Of the most frequent ones: the values of few pixels may be anything.
   std::size_t step = 0, seen = 0;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i >= least_numbers && double(seen) > sky_share * double(finite)) break;
+    if (i >= min_numbers && double(seen) > sky_share * double(finite)) break;
     seen += pixels[numbers[i]];
     step =
         std::gcd(step, numbers[i] > numbers[0] ? numbers[i] - numbers[0] : numbers[0] - numbers[i]);
@@ -154,21 +154,21 @@ CountMap common_step(std::span<const double> values) {
 
 CountMap choose_count_map(std::span<const double> values, int columns) {
   const Range range = range_of(values);
-  if (range.whole && range.least >= 0 && range.most <= most_count) return common_step(values);
+  if (range.whole && range.least >= 0 && range.most <= max_count) return common_step(values);
   const double width = range.most - range.least;
-  if (range.whole && width <= most_count) return {range.least, 1.0};
+  if (range.whole && width <= max_count) return {range.least, 1.0};
   double step = pixel_noise(values, columns) / 16;
   if (range.whole) step = std::max(1.0, std::floor(step));
   const double median = median_of(sample(values, 1 << 20));
   // Without noise, and where the noise is lost in the numbers' own steps.
-  if (!(step > std::abs(median) * 1e-12)) step = std::max(width / most_count, 1e-30);
-  if (width <= most_count * step) return {range.least, step};
-  const double down = std::min(median - range.least, 0.05 * most_count * step);
+  if (!(step > std::abs(median) * 1e-12)) step = std::max(width / max_count, 1e-30);
+  if (width <= max_count * step) return {range.least, step};
+  const double down = std::min(median - range.least, 0.05 * max_count * step);
   return {range.whole ? std::floor(median - down) : median - down, step};
 }
 
 Ceiling find_ceiling(std::span<const double> values) {
-  constexpr std::size_t least_pixels = 5;
+  constexpr std::size_t min_pixels = 5;
   Ceiling top{-INFINITY, 0};
   std::size_t finite = 0;
   for (const double v : values) {
@@ -178,7 +178,7 @@ Ceiling find_ceiling(std::span<const double> values) {
     top.pixels += v == top.value;
   }
   // A level that much of the frame has is the sky, not a limit.
-  if (top.pixels < least_pixels || top.pixels > finite / 4) top.pixels = 0;
+  if (top.pixels < min_pixels || top.pixels > finite / 4) top.pixels = 0;
   return top;
 }
 

@@ -10,8 +10,8 @@
 namespace dmise {
 namespace {
 
-constexpr double most_gain = 20.0;     // of GAIN [e-/count]; more is a camera's setting
-constexpr double least_noise_e = 0.1;  // of a camera
+constexpr double max_gain = 20.0;    // of GAIN [e-/count]; more is a camera's setting
+constexpr double min_noise_e = 0.1;  // of a camera
 constexpr int mesh_px = 64;
 
 /// Electrons per count by the noise of the sky: the slope of variance against level over a mesh.
@@ -80,12 +80,12 @@ std::optional<MeasuredGain> measure_gain_of(const ColourMosaic& mosaic, const Co
 
 /// A gain by which the sky's noise is one that a camera can have.
 std::optional<StandardCards::Named<double>> stated_gain(const StandardCards& cards, double noise) {
-  for (const auto& [key, most] : {std::pair{"EGAIN", 1e9}, {"GAIN", most_gain}}) {
+  for (const auto& [key, most] : {std::pair{"EGAIN", 1e9}, {"GAIN", max_gain}}) {
     const auto gain = cards.number(key);
     if (!gain) continue;
     if (!(*gain > 0 && *gain <= most))
       cards.reject(key, "gain: is not in electrons per count");
-    else if (*gain * noise < least_noise_e)
+    else if (*gain * noise < min_noise_e)
       cards.reject(key, "gain: makes the sky's noise less than 0.1 electrons");
     else
       return StandardCards::Named<double>{key, *gain};
@@ -96,9 +96,9 @@ std::optional<StandardCards::Named<double>> stated_gain(const StandardCards& car
 /// Whether a gain is a camera's setting: light of so many electrons a count had less noise. Pixels
 /// that were averaged or resampled have less noise than their light, never more.
 bool is_setting(const StandardCards::Named<double>& stated, const MeasuredGain& measured) {
-  constexpr double least_ratio = 1.5, least_sigmas = 5.0;
-  return stated.key == "GAIN" && stated.value > least_ratio * measured.e_per_dn &&
-         stated.value - measured.e_per_dn > least_sigmas * measured.sigma;
+  constexpr double min_ratio = 1.5, min_sigmas = 5.0;
+  return stated.key == "GAIN" && stated.value > min_ratio * measured.e_per_dn &&
+         stated.value - measured.e_per_dn > min_sigmas * measured.sigma;
 }
 
 void set_gain(const StandardCards& cards, const CountSource& source, const CountImage& counts,
@@ -166,7 +166,7 @@ void set_saturation(const StandardCards& cards, const CountSource& source, doubl
   const CountMap& map = source.map;
   header.saturation_dn = highest;
   const auto count_of = [&](double value) {
-    return map.count(source.mosaic ? source.mosaic->least_evened(value) : value);
+    return map.count(source.mosaic ? source.mosaic->min_evened(value) : value);
   };
   if (const auto stated = cards.first_number({"SATURATE", "SATLEVEL"})) {
     const double bias = header.bias_dn - map.count(0.0), planes = source.planes;

@@ -82,7 +82,7 @@ LineLevel level_of_line(const Lines& lines, int line, const std::vector<double>&
 /// How many lines from an edge on stand out. `way`: 1 from the first line on, -1 from the last.
 int standing_out(const Lines& lines, int way, const std::vector<double>& values) {
   constexpr int widest = 32;
-  constexpr double least_errors = 6.0;
+  constexpr double min_errors = 6.0;
   const int width = std::min(widest, lines.count / 8);
   if (width < 4) return 0;
   const auto line_at = [&](int k) { return way > 0 ? k : lines.count - 1 - k; };
@@ -99,7 +99,7 @@ int standing_out(const Lines& lines, int way, const std::vector<double>& values)
   for (int k = 0; k < width; ++k) {
     const LineLevel l = level_of_line(lines, line_at(k), values);
     const double led_to = near + slope * (near_middle - k);
-    if (std::isfinite(l.error) && !(std::abs(l.level - led_to) > least_errors * l.error)) return k;
+    if (std::isfinite(l.error) && !(std::abs(l.level - led_to) > min_errors * l.error)) return k;
   }
   return width;
 }
@@ -136,18 +136,18 @@ void give_sky(const std::vector<std::size_t>& pixels, const Background& sky, Fra
 /// narrow.
 void add_bleeding(const Lines& lines, const Frame& frame, const Background& sky,
                   std::vector<std::size_t>& charge) {
-  constexpr int least_run = 10, most_width = 3, least_core = 5;
-  constexpr double least_snr = 5.0, narrower = 2.0;
+  constexpr int min_run = 10, max_width = 3, min_core = 5;
+  constexpr double min_snr = 5.0, narrower = 2.0;
   const auto& pixels = frame.counts.pixels;
   const auto clipped = [&](int line, int place) {
     return line >= 0 && line < lines.count &&
            double(pixels[lines.at(line, place)]) >= frame.header.saturation_dn;
   };
-  // Up to `least_core`: wider is wide enough.
+  // Up to `min_core`: wider is wide enough.
   const auto width_at = [&](int line, int place) {
     int first = line, last = line;
-    while (last - first + 1 < least_core && clipped(first - 1, place)) --first;
-    while (last - first + 1 < least_core && clipped(last + 1, place)) ++last;
+    while (last - first + 1 < min_core && clipped(first - 1, place)) --first;
+    while (last - first + 1 < min_core && clipped(last + 1, place)) ++last;
     return last - first + 1;
   };
   const auto light_at = [&](int line, int place) {
@@ -161,7 +161,7 @@ void add_bleeding(const Lines& lines, const Frame& frame, const Background& sky,
                                       int(i / std::size_t(frame.counts.columns)));
     const double beside = std::max(line >= 3 ? light_at(line - 3, place) : 0.0,
                                    line + 3 < lines.count ? light_at(line + 3, place) : 0.0);
-    return light_at(line, place) > least_snr * noise + narrower * std::max(beside, 0.0);
+    return light_at(line, place) > min_snr * noise + narrower * std::max(beside, 0.0);
   };
   for (int line = 0; line < lines.count; ++line)
     for (int first = 0; first < lines.length; ++first) {
@@ -170,11 +170,11 @@ void add_bleeding(const Lines& lines, const Frame& frame, const Background& sky,
       for (; last < lines.length && clipped(line, last); ++last) {
         const int wide = width_at(line, last);
         core = std::max(core, wide);
-        thin += wide <= most_width;
+        thin += wide <= max_width;
       }
-      if (last - first >= least_run && core >= least_core && 2 * thin > last - first) {
+      if (last - first >= min_run && core >= min_core && 2 * thin > last - first) {
         for (int k = first; k < last; ++k)
-          if (width_at(line, k) <= most_width) charge.push_back(lines.at(line, k));
+          if (width_at(line, k) <= max_width) charge.push_back(lines.at(line, k));
         for (int k = last; k < lines.length && is_narrow(line, k); ++k)
           charge.push_back(lines.at(line, k));
         for (int k = first - 1; k >= 0 && is_narrow(line, k); --k)
@@ -227,14 +227,14 @@ void leave_out_bright_edges(const StandardCards& cards, int columns, int rows,
 }
 
 void leave_out_hot_pixels(double sigma_px, Frame& frame, Threads& threads) {
-  constexpr double least_sigma_px = 0.7, sharper = 2.0, least_snr = 8.0, least_excess = 5.0;
+  constexpr double min_sigma_px = 0.7, sharper = 2.0, min_snr = 8.0, min_excess = 5.0;
   const CountImage& counts = frame.counts;
-  if (!(sigma_px >= least_sigma_px) || counts.columns < 3 || counts.rows < 3) return;
+  if (!(sigma_px >= min_sigma_px) || counts.columns < 3 || counts.rows < 3) return;
   const Background sky(counts, defect_mesh_px, threads);
   const Psf psf(sigma_px);
   const Trail star{.flux_e = 1.0};
   // Of light in the middle of a pixel, over the mean of the four beside it: more is no light.
-  const double most_ratio = sharper * trail_value(star, psf, 0, 0) / trail_value(star, psf, 1, 0);
+  const double max_ratio = sharper * trail_value(star, psf, 0, 0) / trail_value(star, psf, 1, 0);
   const double gain = frame.header.gain_e_per_dn;
   std::vector<std::size_t> hot;
   std::vector<float> level(std::size_t(counts.columns)), sigma(level.size());
@@ -244,15 +244,15 @@ void leave_out_hot_pixels(double sigma_px, Frame& frame, Threads& threads) {
     for (int x = 1; x + 1 < counts.columns; ++x) {
       const double here = double(level[std::size_t(x)]), noise = double(sigma[std::size_t(x)]);
       const double light = counts.at(x, y) - here;
-      if (!(light > least_snr * noise)) continue;
+      if (!(light > min_snr * noise)) continue;
       const double beside =
           (counts.at(x - 1, y) + counts.at(x + 1, y) + counts.at(x, y - 1) + counts.at(x, y + 1)) /
               4.0 -
           here;
-      const double excess = light - most_ratio * std::max(beside, 0.0);
-      const double variance = noise * noise * (1 + most_ratio * most_ratio / 4) +
-                              (light + most_ratio * most_ratio / 4 * std::max(beside, 0.0)) / gain;
-      if (excess > least_excess * std::sqrt(variance))
+      const double excess = light - max_ratio * std::max(beside, 0.0);
+      const double variance = noise * noise * (1 + max_ratio * max_ratio / 4) +
+                              (light + max_ratio * max_ratio / 4 * std::max(beside, 0.0)) / gain;
+      if (excess > min_excess * std::sqrt(variance))
         hot.push_back(std::size_t(y) * std::size_t(counts.columns) + std::size_t(x));
     }
   }

@@ -206,7 +206,7 @@ std::optional<ToldTime> mjd_of(const StandardCards& cards, const std::string& ke
 /// An instant by DATE-xxx, else MJD-xxx. A width that may be seen is noted.
 std::optional<ToldTime> instant(const StandardCards& cards, const std::string& which,
                                 const Scale& scale) {
-  constexpr double least_noted_s = 0.01;
+  constexpr double min_noted_s = 0.01;
   for (const std::string sign : {"-", "_"}) {
     std::string key = "DATE" + sign + which;
     auto told = date_of(cards, key, which, scale);
@@ -215,7 +215,7 @@ std::optional<ToldTime> instant(const StandardCards& cards, const std::string& w
       told = mjd_of(cards, key, scale);
     }
     if (!told) continue;
-    if (told->width_s > least_noted_s)
+    if (told->width_s > min_noted_s)
       cards.assumed(formatted("time: the last digit of %s is %.3g s: no time is known better",
                               key.c_str(), told->width_s));
     return told;

@@ -38,7 +38,7 @@ int longitude_axis(const StandardCards& cards) {
   throw Unknown{"CTYPE1", "pointing: must be RA or DEC beside the other"};
 }
 
-constexpr int most_pv = 39;
+constexpr int max_pv = 39;
 
 std::string pv_key(int axis, int number) {
   return "PV" + std::to_string(axis) + "_" + std::to_string(number);
@@ -48,7 +48,7 @@ std::string pv_key(int axis, int number) {
 /// own parameters are PV1_0 to PV1_4 alone.
 bool has_tpv(const StandardCards& cards, const std::string& code, int ra_axis) {
   if (code != "TAN") return code == "TPV";
-  for (int m = 0; m <= most_pv; ++m)
+  for (int m = 0; m <= max_pv; ++m)
     if (cards.has(pv_key(3 - ra_axis, m)) || (m > 4 && cards.has(pv_key(ra_axis, m)))) return true;
   return false;
 }
@@ -71,7 +71,7 @@ Projection projection_of(const StandardCards& cards, int ra_axis) {
   if (!coefficients.empty() && cards.number(pv + "1").value_or(0.0) != 1.0)
     throw Unknown{pv + "1", "pointing: of a polynomial must be 1"};
   for (const int axis : {1, 2})
-    for (int m = 0; m <= most_pv; ++m) {
+    for (int m = 0; m <= max_pv; ++m) {
       const auto& known = Projection::rows()[*row].coefficients;
       const bool used = !coefficients.empty() && axis == 3 - ra_axis &&
                         (m == 1 || std::any_of(known.begin(), known.end(),

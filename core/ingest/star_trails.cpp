@@ -19,10 +19,10 @@
 namespace dmise {
 namespace {
 
-constexpr double least_fwhm_px = 0.5, most_fwhm_px = 50.0;
+constexpr double min_fwhm_px = 0.5, max_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
 // A shorter trail looks as coma and astigmatism do, which the PSF follows.
-constexpr double least_trail_sigmas = 3.5;
+constexpr double min_trail_sigmas = 3.5;
 
 /// Turns a camera by a rotation vector in its axes.
 Quaternion turned(const Quaternion& camera, double x_rad, double y_rad) {
@@ -68,11 +68,11 @@ PixelPosition trail_in_the_middle(const FrameHeader& header, int columns, int ro
 bool set_width(const StandardCards& cards, const std::optional<StarShape>& shape,
                FrameHeader& header) {
   if (const auto stated = cards.number("PSFFWHM");
-      stated && *stated >= least_fwhm_px && *stated <= most_fwhm_px) {
+      stated && *stated >= min_fwhm_px && *stated <= max_fwhm_px) {
     header.psf_fwhm_px = *stated;
   } else if (shape) {
     const double sigma_px = std::sqrt(std::max(shape->sigma_px * shape->sigma_px - 1.0 / 12, 0.0));
-    header.psf_fwhm_px = std::clamp(fwhm_per_sigma * sigma_px, least_fwhm_px, most_fwhm_px);
+    header.psf_fwhm_px = std::clamp(fwhm_per_sigma * sigma_px, min_fwhm_px, max_fwhm_px);
     cards.assumed(formatted("PSF: %.3g px wide (FWHM), measured in %d stars", header.psf_fwhm_px,
                             shape->stars));
   } else {
@@ -125,13 +125,13 @@ bool is_of_mount_at_rest(const Elongation& e) {
 
 /// Whether most images are long in one direction, also blends of trails.
 bool are_aligned(const StarShape& shape) {
-  constexpr double least_agreement = 0.4;  // of directions
+  constexpr double min_agreement = 0.4;  // of directions
   double plus = 0.0, cross = 0.0;
   for (const StarEllipse& e : shape.ellipses) {
     const double size = std::hypot(e.plus, e.cross);
     if (size > 0) plus += e.plus / size, cross += e.cross / size;
   }
-  return std::hypot(plus, cross) > least_agreement * double(shape.ellipses.size());
+  return std::hypot(plus, cross) > min_agreement * double(shape.ellipses.size());
 }
 
 /// The trail that most edges of light show.
@@ -189,7 +189,7 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
   std::optional<PixelPosition> trail;
   if (!is_short && are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
   if (!trail) trail = measured_trail(shape);
-  if (trail && std::hypot(trail->x_px, trail->y_px) < least_trail_sigmas * shape.sigma_px) {
+  if (trail && std::hypot(trail->x_px, trail->y_px) < min_trail_sigmas * shape.sigma_px) {
     cards.assumed(
         formatted("mount: turns with the stars, whose images are %.2g px longer than wide",
                   std::hypot(trail->x_px, trail->y_px)));

@@ -23,9 +23,8 @@ ErrorBound ClockError::error(int, const PlanFacts& f) const {
   if (f.clock_error_s == 0.0 && drift == 0.0) return {};
   // A shadow, a glint or a speckle may begin or end within the error.
   if (f.near_shadow || f.shapes > 0 || f.screens > 0) return not_bounded;
-  const double most_rad =
-      std::max(f.star_rate_rad_per_s, f.object_rate_rad_per_s) * f.clock_error_s;
-  if (most_rad > f.pixel_rad) return not_bounded;  // other sources enter the frame
+  const double max_rad = std::max(f.star_rate_rad_per_s, f.object_rate_rad_per_s) * f.clock_error_s;
+  if (max_rad > f.pixel_rad) return not_bounded;  // other sources enter the frame
   ErrorBound error = f.shifted_stars(f.star_rate_rad_per_s * f.clock_error_s);
   if (f.objects > 0) error += f.shifted_objects(f.object_rate_rad_per_s * f.clock_error_s);
   // The exposure is longer or shorter.
@@ -44,7 +43,7 @@ SimTime ClockError::reading(SimTime true_time, double jitter_s) const {
 
 SimTime ClockError::surely_read_by(SimTime true_time) const {
   constexpr SimTime rounding{3};
-  return reading(true_time, -most_jitter_s()) - rounding;
+  return reading(true_time, -max_jitter_s()) - rounding;
 }
 
 }  // namespace dmise

@@ -28,11 +28,11 @@ struct ClockError {
   SimTime reading(SimTime true_time, double jitter_s) const;
 
   /// Bound of the jitter in units of its rms: that of `normal_of` (core/base/numeric/rng.h).
-  static constexpr double most_deviations = 6.35;
-  double most_jitter_s() const { return most_deviations * clock_rms_s; }
+  static constexpr double max_deviations = 6.35;
+  double max_jitter_s() const { return max_deviations * clock_rms_s; }
   /// Returns the first and the last true time at which the clock may read `reading`.
-  SimTime earliest(SimTime reading) const { return true_time(reading, most_jitter_s()); }
-  SimTime latest(SimTime reading) const { return true_time(reading, -most_jitter_s()); }
+  SimTime earliest(SimTime reading) const { return true_time(reading, max_jitter_s()); }
+  SimTime latest(SimTime reading) const { return true_time(reading, -max_jitter_s()); }
   /// Returns the largest reading whose `latest` is not after `true_time`, or one a few ns less.
   SimTime surely_read_by(SimTime true_time) const;
 };

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_hz = 1e5, most_arcsec = 36000.0;
+constexpr double max_hz = 1e5, max_arcsec = 36000.0;
 
 double sinc(double x) { return std::abs(x) < 1e-8 ? 1.0 : std::sin(x) / x; }
 
@@ -24,14 +24,14 @@ double displacing(double frequency_hz, double exposure_s) {
 std::span<const InstrumentParameter> Vibration::parameters() {
   using Kind = InstrumentParameter::Kind;
   static const InstrumentParameter table[] = {
-      {"psd_hz", 1.0, most_hz, Kind::list, &Vibration::psd_frequency_hz,
+      {"psd_hz", 1.0, max_hz, Kind::list, &Vibration::psd_frequency_hz,
        "Frequencies of the power spectral density [Hz], rising."},
-      {"psd_arcsec2_per_hz", arcsec * arcsec, most_arcsec * most_arcsec, Kind::list,
+      {"psd_arcsec2_per_hz", arcsec * arcsec, max_arcsec * max_arcsec, Kind::list,
        &Vibration::psd_rad2_per_hz,
        "One-sided density of an axis there [arcsec2/Hz]; straight between, none outside."},
-      {"sine_hz", 1.0, most_hz, Kind::list, &Vibration::sine_frequency_hz,
+      {"sine_hz", 1.0, max_hz, Kind::list, &Vibration::sine_frequency_hz,
        "Frequencies of sinusoids [Hz]."},
-      {"sine_rms_arcsec", arcsec, most_arcsec, Kind::list, &Vibration::sine_rms_rad,
+      {"sine_rms_arcsec", arcsec, max_arcsec, Kind::list, &Vibration::sine_rms_rad,
        "Their rms along an axis [arcsec]."}};
   return table;
 }

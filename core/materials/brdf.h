@@ -45,7 +45,7 @@ using Brdf = std::variant<Lambert, SandfordRobertson, Phong>;
 /// lobe is held constant where light is summed or drawn, so that a facet's light goes to 0 as it
 /// turns edge-on. Costs 1 % of the light of a lobe as wide as the hemisphere at normal incidence,
 /// less for narrower ones. A choice of this implementation, not of the model.
-inline constexpr double least_cos_out = 0.02;
+inline constexpr double min_cos_out = 0.02;
 
 /// Fraction of the light from one direction that is reflected, [0, 1]. Closed form for Lambert and
 /// Sandford-Robertson; quadrature to 1e-6 for Phong.

@@ -211,14 +211,14 @@ std::vector<std::string> repair(Mesh& mesh, MeshLines lines) {
       mesh.triangles.push_back(mesh.triangles[t]);
       mesh.triangles.back().turn_over();
     }
-  constexpr std::size_t most_notes = 20;
+  constexpr std::size_t max_notes = 20;
   std::size_t sheet_count = 0;
   for (const auto& [surface, sheet] : sheets)
-    if (++sheet_count <= most_notes)
+    if (++sheet_count <= max_notes)
       notes.push_back(lines.of(sheet.first) + ": open surface of " + facets_text(sheet.second) +
                       ": a sheet, given a back");
-  if (sheet_count > most_notes)
-    notes.push_back(lines.file + ": and " + std::to_string(sheet_count - most_notes) +
+  if (sheet_count > max_notes)
+    notes.push_back(lines.file + ": and " + std::to_string(sheet_count - max_notes) +
                     " more open surfaces");
   return notes;
 }

@@ -18,8 +18,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_corners = 1024;                 // of one face
-constexpr std::size_t most_texels = std::size_t(1) << 27;  // numbers in all pictures of a model
+constexpr std::size_t max_corners = 1024;                 // of one face
+constexpr std::size_t max_texels = std::size_t(1) << 27;  // numbers in all pictures of a model
 
 class Reader {
  public:
@@ -44,10 +44,10 @@ class Reader {
     const std::string_view key = fields_.keyword();
     if (key == "v") {
       model_.mesh.vertex_m.push_back({fields_.number(1), fields_.number(2), fields_.number(3)});
-      if (model_.mesh.vertex_m.size() > most_facets) fields_.fail("too many vertices");
+      if (model_.mesh.vertex_m.size() > max_facets) fields_.fail("too many vertices");
     } else if (key == "vt") {
       place_.push_back({texture_number(1), fields_.size() > 2 ? texture_number(2) : 0.0f});
-      if (place_.size() > most_facets) fields_.fail("too many places on textures");
+      if (place_.size() > max_facets) fields_.fail("too many places on textures");
     } else if (key == "f" || key == "fo") {
       face();
     } else if (key == "usemtl") {
@@ -137,8 +137,8 @@ class Reader {
   void face() {
     const std::size_t corners = fields_.size() - 1;
     if (corners < 3) fields_.fail("a face needs at least three corners");
-    if (corners > most_corners)
-      fields_.fail("a face has at most " + std::to_string(most_corners) + " corners");
+    if (corners > max_corners)
+      fields_.fail("a face has at most " + std::to_string(max_corners) + " corners");
     std::vector<Corner> of;
     for (std::size_t i = 1; i <= corners; ++i) of.push_back(corner(fields_[i]));
     if (material_ == none) {
@@ -161,7 +161,7 @@ class Reader {
       for (const Corner& c : of) places.push_back(model_.mesh.vertex_m[c.vertex]);
       for (const auto& [a, b, c] : triangulate(places)) add(a, b, c);
     }
-    if (model_.mesh.triangles.size() > most_facets) fields_.fail("too many facets");
+    if (model_.mesh.triangles.size() > max_facets) fields_.fail("too many facets");
   }
 
   /// The current material without its pictures, for faces without texture coordinates.
@@ -213,7 +213,7 @@ class Reader {
       auto picture =
           sources_.read_picture(described.file, colour ? PictureOf::light : PictureOf::quantity);
       texels_ += picture.pixels.size();
-      if (texels_ > most_texels) throw Error("the pictures of the model are too large in total");
+      if (texels_ > max_texels) throw Error("the pictures of the model are too large in total");
       return std::make_shared<const Texture>(colour ? colour_texture(described, std::move(picture))
                                                     : slope_texture(described, picture));
     } catch (const Error& error) {

@@ -25,7 +25,7 @@ struct ObjSources {
 };
 
 /// Limit on the number of facets.
-inline constexpr std::size_t most_facets = 4'000'000;
+inline constexpr std::size_t max_facets = 4'000'000;
 
 /// Parses a Wavefront OBJ, lengths in metres: v, vt, f (any number of corners, absolute and
 /// negative indices, with and without texture and normal), usemtl, mtllib, o, g, s. Vertex normals

@@ -11,11 +11,11 @@ bool has_panel(const Mesh& mesh) {
 }
 
 bool faces_normal(const Mesh& mesh, const SunTrackingPanel& panel) {
-  constexpr double least_cosine = 0.70710678118654752;
+  constexpr double min_cosine = 0.70710678118654752;
   const Vec<Body> normal = unit(panel.normal);
   return std::ranges::any_of(mesh.triangles, [&](const Mesh::Triangle& t) {
     const Vec<Body> twice = double_area_m2(mesh, t);
-    return t.panel && dot(twice, normal) > least_cosine * norm(twice);
+    return t.panel && dot(twice, normal) > min_cosine * norm(twice);
   });
 }
 

@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-constexpr int most_noll = 66;
+constexpr int max_noll = 66;
 
 /// Distance of a place from the axis in the tables' unit; beyond what the lens images their end.
 double radius_at(const Optics& optics, double height) {
@@ -27,7 +27,7 @@ int partner(int noll) {
 }
 
 /// Phases of Noll's terms at a place [rad rms], by index.
-using Phases = std::array<double, most_noll + 1>;
+using Phases = std::array<double, max_noll + 1>;
 Phases phases_at(const Optics& optics, const FieldPlace& place, double wavelength_m) {
   Phases phases{};
   for (const WavefrontTerm& t : terms_of_field(optics, place))
@@ -179,8 +179,8 @@ WidthRange gaussian_widths(const Optics& optics, double wavelength_m) {
   WidthRange range{1e9, 0.0};
   for (const double height : table_heights(optics)) {
     const GaussianShape shape = gaussian_at(optics, {height, 0.0}, wavelength_m);
-    range.least_px = std::min({range.least_px, std::sqrt(shape.xx), std::sqrt(shape.yy)});
-    range.most_px = std::max({range.most_px, std::sqrt(shape.xx), std::sqrt(shape.yy)});
+    range.min_px = std::min({range.min_px, std::sqrt(shape.xx), std::sqrt(shape.yy)});
+    range.max_px = std::max({range.max_px, std::sqrt(shape.xx), std::sqrt(shape.yy)});
   }
   return range;
 }

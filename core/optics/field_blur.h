@@ -75,7 +75,7 @@ std::vector<double> table_heights(const Optics& optics);
 
 /// Narrowest and widest deviation of the Gaussians over the frame [px].
 struct WidthRange {
-  double least_px = 0.0, most_px = 0.0;
+  double min_px = 0.0, max_px = 0.0;
 };
 WidthRange gaussian_widths(const Optics& optics, double wavelength_m);
 

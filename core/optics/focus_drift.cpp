@@ -32,7 +32,7 @@ double FocusDrift::at_m(double time_s) const {
   return 1e-6 * (start_um + um_per_hour * hours + um_per_k * warmer_k);
 }
 
-double FocusDrift::most_m() const {
+double FocusDrift::max_m() const {
   constexpr int steps = 1440;
   // What a cosine may rise above the larger of two of its points.
   const double step_rad = day_angle_rad(run_s / hour_s / steps);

@@ -29,7 +29,7 @@ struct FocusDrift {
   /// Defocus at a time of the run [m].
   double at_m(double time_s) const;
   /// Its largest size in the run [m].
-  double most_m() const;
+  double max_m() const;
   bool operator==(const FocusDrift&) const = default;
 };
 

@@ -62,7 +62,7 @@ struct PointSpread {
   std::vector<WavefrontTerm> wavefront;
   FieldAberrations field;
   int grid_columns = 1, grid_rows = 1;  // kernels over the field, 1..9, interpolated
-  int most_screens = 32;                // beyond so many tau0: long exposure
+  int max_screens = 32;                 // beyond so many tau0: long exposure
   FieldBlur varying;                    // over the field, by tables
   FocusDrift drift;                     // of the detector along the axis
   MeasuredPsfPointer measured;          // of `file`, else null

@@ -34,7 +34,7 @@ PsfKernel tapered(const std::vector<T>& values, int half) {
 }
 PsfKernel tapered(const PsfKernel& kernel) { return tapered(kernel.values, kernel.half); }
 
-constexpr std::size_t most_places = 256;  // with cached centring
+constexpr std::size_t max_places = 256;  // with cached centring
 
 /// Whether Noll's term is odd about the centre.
 bool has_odd_order(int noll) { return noll_orders(noll)[0] % 2 == 1; }
@@ -209,7 +209,7 @@ PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelen
   });
   const std::array<ZernikeTerm, 2> tilt =
       known != centred_.end() ? known->tilt : centring(place, wavelength);
-  if (known == centred_.end() && centred_.size() < most_places)
+  if (known == centred_.end() && centred_.size() < max_places)
     centred_.push_back({place, wavelength, tilt});
   Pupil p = pupil_at(optics_, place, wavelength_m);
   p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());

@@ -19,7 +19,7 @@ constexpr double long_exposure_end = 1.806;  // lambda nu / r0
 constexpr double gaussian_end = 0.683;       // sigma nu
 constexpr double narrow_px = 0.25;
 // Above this, deposits on the grid alias by more than 1e-4 of the peak.
-constexpr double most_cycles_per_cell = 0.40;
+constexpr double max_cycles_per_cell = 0.40;
 
 // Kernel sizes without and with a defocus disc.
 constexpr int usual_half_cells = 512, widest_half_cells = 1024;
@@ -40,7 +40,7 @@ Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seein
   const double pixel_rad = o.pixel_angle_rad();
   Measures m{};
   const double px_per_m = 1.0 / o.f_number() / o.pixel_pitch_m;
-  m.widest_px = (std::abs(s.defocus_m) + s.drift.most_m()) * px_per_m;
+  m.widest_px = (std::abs(s.defocus_m) + s.drift.max_m()) * px_per_m;
   if (s.model == Model::gaussian) {
     m.defocus_px = std::abs(s.defocus_m) * px_per_m;
     m.airy_px = fwhm_per_sigma * psf_sigma_px(o, wavelength_m);
@@ -49,8 +49,8 @@ Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seein
       const GaussianShape axis = gaussian_at(o, {}, wavelength_m);
       const WidthRange range = gaussian_widths(o, wavelength_m);
       m.airy_px = fwhm_per_sigma * std::sqrt(0.5 * (axis.xx + axis.yy));
-      m.cutoff_per_px = gaussian_end / range.least_px;
-      m.widest_px += 5.0 * fwhm_per_sigma * range.most_px;
+      m.cutoff_per_px = gaussian_end / range.min_px;
+      m.widest_px += 5.0 * fwhm_per_sigma * range.max_px;
     }
     return m;
   }
@@ -94,7 +94,7 @@ int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* ai
                double exposure_s) {
   if (!air) return 0;
   const double screens = std::ceil(exposure_s / air->tau0_s(wavelength_m));
-  return screens <= s.most_screens ? std::max(1, int(screens)) : 0;
+  return screens <= s.max_screens ? std::max(1, int(screens)) : 0;
 }
 
 [[noreturn]] void refuse(const char* key, const std::string& reason) {
@@ -141,7 +141,7 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
     return plan;
   }
 
-  const int least = std::max(1, int(std::ceil(m.cutoff_per_px / most_cycles_per_cell - 1e-9)));
+  const int least = std::max(1, int(std::ceil(m.cutoff_per_px / max_cycles_per_cell - 1e-9)));
   plan.oversampling = s.oversampling > 0 ? s.oversampling : least;
   // Pixels that are in the images are those about the centres of cells.
   if (of_file && s.measured->with_pixel() && plan.oversampling % 2 == 0) ++plan.oversampling;
@@ -205,7 +205,7 @@ PsfPlan plan_defocused(const Optics& optics, double wavelength_m, const PsfPlan&
   PsfPlan plan = in_focus;
   if (in_focus.method == Method::deposit) {
     const double cutoff_per_px = gaussian_end / psf_sigma_px(optics, wavelength_m);
-    const int least = int(std::ceil(cutoff_per_px / most_cycles_per_cell - 1e-9));
+    const int least = int(std::ceil(cutoff_per_px / max_cycles_per_cell - 1e-9));
     plan.oversampling = std::clamp(least, 1, largest_oversampling);
     plan.half_cells = int(std::ceil(5.0 * plan.fwhm_px * plan.oversampling));
     plan.exposure = ExposureKind::none;  // its width is in the Gaussian's

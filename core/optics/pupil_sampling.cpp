@@ -30,7 +30,7 @@ double steepest_in_field(const Optics& optics, double wavelength_m) {
     double steepest = 0.0;
     for (const double sign : {-1.0, 1.0}) {
       Optics drifted = optics;
-      drifted.spread.defocus_m += sign * optics.spread.drift.most_m();
+      drifted.spread.defocus_m += sign * optics.spread.drift.max_m();
       drifted.spread.drift = {};
       steepest = std::max(steepest, steepest_in_field(drifted, wavelength_m));
     }
@@ -147,12 +147,12 @@ PupilGrid sample_pupil(const Optics& optics, double wavelength_m, const PsfPlan&
   constexpr double margin = 1.05;  // for positions between the sampled ones
   const double slope = steepest_in_field(optics, wavelength_m);
   const double steep = std::ceil(margin * 2 * slope / pi);
-  if (steep > most_pupil_samples)
+  if (steep > max_pupil_samples)
     throw ConfigError(steepest_key(optics, wavelength_m) + ": a wavefront of " +
                       std::to_string(std::lround(slope / (2 * pi))) +
                       " waves over the aperture's radius is too steep to sample: needs " +
                       std::to_string(std::llround(steep)) + " samples across, more than " +
-                      std::to_string(most_pupil_samples));
+                      std::to_string(max_pupil_samples));
   const double r0_m =
       screens ? seeing->r0_at_m(wavelength_m) : std::numeric_limits<double>::infinity();
   const int samples = std::max(screens ? turbulent_samples : still_samples, int(steep));
@@ -171,10 +171,10 @@ PupilGrid sample_screens(const Optics& optics, const PsfPlan& plan,
                          const std::optional<SensorSeeing>& seeing) {
   const PupilGrid grid = sample_pupil(optics, plan.wavelength_m, plan, seeing);
   const int across = aperture_samples(pupil_at(optics, {}, plan.wavelength_m), grid);
-  if (across > most_pupil_samples)
+  if (across > max_pupil_samples)
     throw ConfigError("seeing.r0_m: turbulence too strong for the aperture: needs a screen of " +
                       std::to_string(across) + " samples across, more than " +
-                      std::to_string(most_pupil_samples));
+                      std::to_string(max_pupil_samples));
   return grid;
 }
 

@@ -29,7 +29,7 @@ double steepest_slope_of(const std::vector<ZernikeTerm>& terms);
 /// Grids of the pupil for each wavelength. Empty if the camera's kernel needs no pupil. Fine enough
 /// that the wavefront changes by less than pi between samples anywhere in the field: otherwise
 /// light would alias. Throws `ConfigError` "seeing.r0_m: reason" or "optics.KEY: reason" if that
-/// takes more than `most_pupil_samples` across the aperture.
+/// takes more than `max_pupil_samples` across the aperture.
 std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<WavelengthShare>& band,
                                      const PsfPlan& plan,
                                      const std::optional<SensorSeeing>& seeing);
@@ -39,6 +39,6 @@ std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<Wav
 PupilGrid sample_screens(const Optics& optics, const PsfPlan& plan,
                          const std::optional<SensorSeeing>& seeing);
 
-inline constexpr int most_pupil_samples = 1024;
+inline constexpr int max_pupil_samples = 1024;
 
 }  // namespace dmise

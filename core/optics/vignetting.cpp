@@ -9,9 +9,9 @@
 namespace dmise {
 
 ErrorBound Vignetting::error(int, const PlanFacts& f) {
-  const double lost = 1.0 - f.least_illumination;
+  const double lost = 1.0 - f.min_illumination;
   ErrorBound error = f.without_light([&](const SkySample& s) { return lost * s.sky_e; });
-  error.photometry_mag = -2.5 * std::log10(std::max(f.least_illumination, 1e-9));
+  error.photometry_mag = -2.5 * std::log10(std::max(f.min_illumination, 1e-9));
   // It changes along a source: twice as much at the edge as on the way there.
   double length_px = f.longest_trail_px;
   for (const double radius_px : f.shape_radius_px) length_px = std::max(length_px, 2.0 * radius_px);

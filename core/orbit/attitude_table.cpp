@@ -9,7 +9,7 @@ namespace dmise {
 
 namespace {
 
-constexpr double least_length = 0.5, most_length = 2.0;  // wider than any rounding
+constexpr double min_length = 0.5, max_length = 2.0;  // wider than any rounding
 
 }  // namespace
 
@@ -18,7 +18,7 @@ TableAttitude parse_attitude_table(std::string_view text, const std::string& sou
   parse_time_table(text, source, "time_s,w,x,y,z", [&](const TimeTableRow& row) {
     const double* q = row.values.data() + 1;
     const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
-    if (!(length > least_length && length < most_length))
+    if (!(length > min_length && length < max_length))
       row.fail("a quaternion of length " + std::to_string(length) + " is no attitude");
     table.time_s.push_back(row.values[0]);
     table.gcrs_from_body.push_back({q[0] / length, q[1] / length, q[2] / length, q[3] / length});

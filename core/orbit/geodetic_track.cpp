@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr double least_height_m = 2.0, most_height_m = 1e9;  // lower is below the ground
+constexpr double min_height_m = 2.0, max_height_m = 1e9;  // lower is below the ground
 
 /// Slope at point `i` of the parabola through it and its neighbours; at an end through the three
 /// points there.
@@ -55,7 +55,7 @@ Trajectory parse_geodetic_track(std::string_view text, const std::string& source
                   [&](const TimeTableRow& row) {
                     const Site site{row.values[1], row.values[2], row.values[3], ellipsoid};
                     if (std::abs(site.latitude_deg) > 90 || std::abs(site.longitude_deg) > 360 ||
-                        !(site.height_m >= least_height_m && site.height_m <= most_height_m))
+                        !(site.height_m >= min_height_m && site.height_m <= max_height_m))
                       row.fail(
                           "latitude must be in -90..90, longitude in -360..360 and height in "
                           "2..1e9 m");
@@ -70,9 +70,9 @@ Trajectory read_enu_track(const std::string& path, const Tai& start, const std::
   return track_of(read_text_file(path), path, start, name, "time_s,east_m,north_m,up_m",
                   [&](const TimeTableRow& row) {
                     const Vec<Enu> place{row.values[1], row.values[2], row.values[3]};
-                    if (!(norm(place) <= most_height_m)) row.fail("must be within 1e9 m");
+                    if (!(norm(place) <= max_height_m)) row.fail("must be within 1e9 m");
                     const Vec<Itrs> p = origin_m + itrs_from_enu * place;
-                    if (!(geodetic_from_itrs(p, origin.ellipsoid).height_m >= least_height_m))
+                    if (!(geodetic_from_itrs(p, origin.ellipsoid).height_m >= min_height_m))
                       row.fail("must be 2 m above the ellipsoid or higher");
                     return p;
                   });

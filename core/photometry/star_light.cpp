@@ -12,8 +12,8 @@ namespace dmise {
 namespace {
 
 constexpr double step = 0.01;
-constexpr int steps = 240;  // least_bv + steps x step = greatest_bv
-constexpr double least_dwarf_bv = 0.95;
+constexpr int steps = 240;  // min_bv + steps x step = greatest_bv
+constexpr double min_dwarf_bv = 0.95;
 
 /// Spectra of stars with their photon rates in V.
 struct StarOfColour {
@@ -36,8 +36,8 @@ std::vector<StarOfColour> stars_by_bv(double least, StarKind kind) {
 }
 
 struct StarsOfKinds {
-  std::vector<StarOfColour> most = stars_by_bv(least_bv, StarKind::most);
-  std::vector<StarOfColour> red_dwarfs = stars_by_bv(least_dwarf_bv, StarKind::red_dwarf);
+  std::vector<StarOfColour> most = stars_by_bv(min_bv, StarKind::most);
+  std::vector<StarOfColour> red_dwarfs = stars_by_bv(min_dwarf_bv, StarKind::red_dwarf);
   std::vector<StarOfColour> m_stars;
 };
 
@@ -68,8 +68,8 @@ StarLight::StarLight(const Band& band) {
 }
 
 double StarLight::at_v_0(double bv) const {
-  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
-  const double at = (used - least_bv) / step;
+  const double used = bv >= min_bv ? std::min(bv, greatest_bv) : min_bv;
+  const double at = (used - min_bv) / step;
   const int low = std::min(int(at), steps - 1);
   return at_v_0_[low] + (at - low) * (at_v_0_[low + 1] - at_v_0_[low]);
 }
@@ -78,9 +78,8 @@ double StarLight::at_v_0(const StarColour& colour) const {
   if (colour.kind == StarKind::most) return at_v_0(colour.bv);
   if (colour.kind != StarKind::red_dwarf)
     return m_at_v_0_[std::size_t(colour.kind) - std::size_t(StarKind::m0_giant)];
-  const double used =
-      colour.bv >= least_dwarf_bv ? std::min(colour.bv, greatest_bv) : least_dwarf_bv;
-  const double at = (used - least_dwarf_bv) / step;
+  const double used = colour.bv >= min_dwarf_bv ? std::min(colour.bv, greatest_bv) : min_dwarf_bv;
+  const double at = (used - min_dwarf_bv) / step;
   const std::size_t low = std::min(std::size_t(at), red_dwarf_at_v_0_.size() - 2);
   return std::lerp(red_dwarf_at_v_0_[low], red_dwarf_at_v_0_[low + 1], at - double(low));
 }
@@ -89,7 +88,7 @@ double StarLight::photons_per_s_m2(double v_mag, const StarColour& colour) const
   return light_of_magnitude(v_mag) * at_v_0(colour);
 }
 
-double StarLight::most_photons_per_s_m2(double v_mag) const {
+double StarLight::max_photons_per_s_m2(double v_mag) const {
   return light_of_magnitude(v_mag) *
          std::max({std::ranges::max(at_v_0_), std::ranges::max(red_dwarf_at_v_0_),
                    std::ranges::max(m_at_v_0_)});

@@ -17,7 +17,7 @@ class StarLight {
 
   double photons_per_s_m2(double v_mag, const StarColour& colour) const;
   /// The most of any colour.
-  double most_photons_per_s_m2(double v_mag) const;
+  double max_photons_per_s_m2(double v_mag) const;
 
   /// The light of many stars of kind `most`, to 1e-14 of it; all spans must have one size.
   void photons_per_s_m2(std::span<const double> v_mag, std::span<const double> bv,
@@ -27,8 +27,8 @@ class StarLight {
   double at_v_0(double bv) const;
   double at_v_0(const StarColour& colour) const;
 
-  std::vector<double> at_v_0_;            // by B-V, `step` apart, from least_bv
-  std::vector<double> red_dwarf_at_v_0_;  // of red dwarfs, from `least_dwarf_bv`
+  std::vector<double> at_v_0_;            // by B-V, `step` apart, from min_bv
+  std::vector<double> red_dwarf_at_v_0_;  // of red dwarfs, from `min_dwarf_bv`
   std::vector<double> m_at_v_0_;          // of types M, by kind from `m0_giant`
 };
 

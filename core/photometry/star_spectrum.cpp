@@ -18,9 +18,7 @@ constexpr double first_bv = -0.3, first_dwarf_bv = 0.95, step_bv = 0.05;  // of 
 constexpr double m_kelvin = 3500.0;  // of the black body that their factors are for
 using Factors = double[std::size(nodes_nm)];
 
-double clamped(double bv) {
-  return std::isnan(bv) ? least_bv : std::clamp(bv, least_bv, greatest_bv);
-}
+double clamped(double bv) { return std::isnan(bv) ? min_bv : std::clamp(bv, min_bv, greatest_bv); }
 
 }  // namespace
 

@@ -8,10 +8,10 @@
 namespace dmise {
 
 /// Range of B-V [mag] of the colour-temperature relation; values outside are clamped.
-inline constexpr double least_bv = -0.4, greatest_bv = 2.0;
+inline constexpr double min_bv = -0.4, greatest_bv = 2.0;
 
 /// Black-body temperature [K] of a star by its B-V, 3,168 K at 2.0 to 21,707 K at -0.4; NaN counts
-/// as `least_bv`.
+/// as `min_bv`.
 /// Source: Ballesteros 2012, EPL 97, 34008, equation 14. Its pole is at B-V = -0.674.
 double colour_temperature_k(double bv);
 

@@ -144,9 +144,9 @@ class OiioCodec final : public PictureCodec {
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
       throw Error("contains no image");
     const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
-    if (pixels > most_picture_pixels)
+    if (pixels > max_picture_pixels)
       throw Error("has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                  " pixels, more than " + std::to_string(most_picture_pixels >> 20) + " Mi");
+                  " pixels, more than " + std::to_string(max_picture_pixels >> 20) + " Mi");
     LinearPicture picture{spec.width, spec.height, spec.nchannels < 3 ? 1 : 3, {}};
     picture.pixels.resize(pixels * std::size_t(picture.channels));
     if (!in->read_image(0, 0, 0, picture.channels, OIIO::TypeDesc::FLOAT, picture.pixels.data()))

@@ -95,8 +95,8 @@ void write_exr(const std::string& path, const ExrImage& image) {
 }
 
 LinearPicture decode_picture(std::string_view bytes, PictureOf what) {
-  if (bytes.size() > most_picture_bytes)
-    throw ConfigError("is larger than " + std::to_string(most_picture_bytes >> 20) + " MiB");
+  if (bytes.size() > max_picture_bytes)
+    throw ConfigError("is larger than " + std::to_string(max_picture_bytes >> 20) + " MiB");
   const std::string format = format_of(bytes);
   try {
     return codec().decode(bytes, format, what);
@@ -106,7 +106,7 @@ LinearPicture decode_picture(std::string_view bytes, PictureOf what) {
 }
 
 LinearPicture read_picture(const std::string& path, PictureOf what) {
-  const std::string bytes = read_text_file(path, most_picture_bytes);
+  const std::string bytes = read_text_file(path, max_picture_bytes);
   return of_file(path, [&] { return decode_picture(bytes, what); });
 }
 

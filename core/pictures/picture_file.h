@@ -52,8 +52,8 @@ struct LinearPicture {
 };
 
 /// Limits of a picture that is read: pixels, and bytes of its file.
-inline constexpr std::size_t most_picture_pixels = std::size_t(1) << 24;
-inline constexpr std::size_t most_picture_bytes = std::size_t(1) << 28;
+inline constexpr std::size_t max_picture_pixels = std::size_t(1) << 24;
+inline constexpr std::size_t max_picture_bytes = std::size_t(1) << 28;
 
 /// Reads a regular file in PNG, TIFF, JPEG or EXR, recognised by its first bytes. Alpha is dropped.
 /// Throws `ConfigError` "PATH: reason".

@@ -92,10 +92,10 @@ class PngCodec final : public PictureCodec {
     if (!png_image_begin_read_from_memory(&png.image, plain.bytes.data(), plain.bytes.size()))
       png.fail();
     const std::size_t pixels = std::size_t(png.image.width) * std::size_t(png.image.height);
-    if (pixels > most_picture_pixels)
+    if (pixels > max_picture_pixels)
       throw Error("has " + std::to_string(png.image.width) + " x " +
                   std::to_string(png.image.height) + " pixels, more than " +
-                  std::to_string(most_picture_pixels >> 20) + " Mi");
+                  std::to_string(max_picture_pixels >> 20) + " Mi");
     const bool grey = !(png.image.format & PNG_FORMAT_FLAG_COLOR);
     const int channels = grey ? 1 : 3;
     LinearPicture picture{int(png.image.width), int(png.image.height), channels, {}};

@@ -114,31 +114,31 @@ void repair(Selection& s, const std::vector<std::vector<Option>>& choices) {
 /// Exchanges one option, or two at a time, as long as that lowers the cost.
 void improve(Selection& s, const std::vector<std::vector<Option>>& choices) {
   for (int round = 0; round < 8; ++round) {
-    double most_saved_s = 0.0;
+    double max_saved_s = 0.0;
     std::size_t a = 0, option_a = 0, b = 0, option_b = 0;
     for (std::size_t i = 0; i < choices.size(); ++i) {
       if (choices[i].size() < 2) continue;
       for (std::size_t p = 0; p < choices[i].size(); ++p) {
         if (p == s.taken(i)) continue;
         const double saved_s = s.at(i).cost_s - choices[i][p].cost_s;
-        if (saved_s > most_saved_s && s.would_fit(s.at(i), choices[i][p]))
-          most_saved_s = saved_s, a = b = i, option_a = option_b = p;
+        if (saved_s > max_saved_s && s.would_fit(s.at(i), choices[i][p]))
+          max_saved_s = saved_s, a = b = i, option_a = option_b = p;
         for (std::size_t j = i + 1; j < choices.size(); ++j) {
           for (std::size_t q = 0; q < choices[j].size(); ++q) {
             const double both_s = saved_s + s.at(j).cost_s - choices[j][q].cost_s;
-            if (q == s.taken(j) || both_s <= most_saved_s) continue;
+            if (q == s.taken(j) || both_s <= max_saved_s) continue;
             Option less = s.at(i), more = choices[i][p];
             for (std::size_t k = 0; k < kinds; ++k) {
               less.share[k] += s.at(j).share[k];
               more.share[k] += choices[j][q].share[k];
             }
             if (s.would_fit(less, more))
-              most_saved_s = both_s, a = i, option_a = p, b = j, option_b = q;
+              max_saved_s = both_s, a = i, option_a = p, b = j, option_b = q;
           }
         }
       }
     }
-    if (!(most_saved_s > 0.0)) return;
+    if (!(max_saved_s > 0.0)) return;
     s.take(a, option_a);
     s.take(b, option_b);
   }
@@ -152,9 +152,9 @@ KnapsackResult solve_knapsack(const std::vector<KnapsackChoice>& choices,
   double scale_s = 0.0;
   for (const auto& choice : choices) {
     options.push_back(useful(choice, budget));
-    double most_s = 0.0;
-    for (const auto& option : options.back()) most_s = std::max(most_s, option.cost_s);
-    scale_s += most_s;
+    double max_s = 0.0;
+    for (const auto& option : options.back()) max_s = std::max(max_s, option.cost_s);
+    scale_s += max_s;
   }
   Shares price{};  // [s] for the whole budget
   Selection best(options);
@@ -162,7 +162,7 @@ KnapsackResult solve_knapsack(const std::vector<KnapsackChoice>& choices,
   for (std::size_t i = 0; i < options.size(); ++i)
     for (std::size_t j = 0; j < options[i].size(); ++j)
       if (options[i][j].share == Shares{}) best.take(i, j);
-  double least_cost_s = 0.0;
+  double min_cost_s = 0.0;
   for (int step = 0; step < steps; ++step) {
     Selection s(options);
     double bound_s = 0.0;
@@ -178,7 +178,7 @@ KnapsackResult solve_knapsack(const std::vector<KnapsackChoice>& choices,
       s.take(i, taken);
     }
     for (const double p : price) bound_s -= p;
-    least_cost_s = std::max(least_cost_s, bound_s);
+    min_cost_s = std::max(min_cost_s, bound_s);
     const double length_s = 0.3 * scale_s / (1.0 + 0.5 * step);
     double slope = 0.0;
     for (const double share : s.share()) slope += (share - 1.0) * (share - 1.0);
@@ -190,15 +190,15 @@ KnapsackResult solve_knapsack(const std::vector<KnapsackChoice>& choices,
     if (worth_repairing) repair(s, options);
     if (s.fits() && s.cost_s() < best.cost_s())
       for (std::size_t i = 0; i < options.size(); ++i) best.take(i, s.taken(i));
-    if (least_cost_s >= best.cost_s() * (1.0 - 1e-9)) break;
+    if (min_cost_s >= best.cost_s() * (1.0 - 1e-9)) break;
   }
   improve(best, options);
-  KnapsackResult result{.cost_s = 0.0, .least_cost_s = least_cost_s};
+  KnapsackResult result{.cost_s = 0.0, .min_cost_s = min_cost_s};
   for (std::size_t i = 0; i < options.size(); ++i) {
     result.option.push_back(best.at(i).index);
     result.cost_s += best.at(i).cost_s;
   }
-  result.least_cost_s = std::min(result.least_cost_s, result.cost_s);
+  result.min_cost_s = std::min(result.min_cost_s, result.cost_s);
   return result;
 }
 

@@ -18,7 +18,7 @@ using KnapsackChoice = std::vector<KnapsackOption>;
 struct KnapsackResult {
   std::vector<std::size_t> option;  // of each choice
   double cost_s = 0.0;
-  double least_cost_s = 0.0;  // lower bound of the optimum
+  double min_cost_s = 0.0;  // lower bound of the optimum
 };
 
 /// Takes one option of each choice so that the errors sum up to no more than `budget` at a low

@@ -19,7 +19,7 @@ void write_plan(JsonWriter& json, const EffectPlan& plan, const CostFactors& fac
   json.begin_object();
   write_error(json.key("budget"), plan.budget);
   write_error(json.key("error"), plan.error);
-  json.field("predicted_s", predicted_s(plan, factors)).field("least_s", plan.least_cost_s);
+  json.field("predicted_s", predicted_s(plan, factors)).field("least_s", plan.min_cost_s);
   if (!plan.in_time) json.field("in_time", false);
   json.key("effects").begin_object();
   for (const auto& p : plan.planned) {

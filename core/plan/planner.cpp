@@ -95,7 +95,7 @@ EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts
   for (const auto& l : levels) choices.push_back(l.options);
   const KnapsackResult result = solve_knapsack(choices, budget);
   EffectPlan plan = plan_of(levels, result.option, facts, asked, budget);
-  plan.least_cost_s = result.least_cost_s;
+  plan.min_cost_s = result.min_cost_s;
   return plan;
 }
 
@@ -158,7 +158,7 @@ EffectPlan replayed_plan(std::span<const PlannableEffect> effects, const PlanFac
   for (const auto& effect : effects) levels.push_back(levels_of(effect, facts, asked, &recorded));
   const std::vector<std::size_t> only(levels.size(), 0);
   EffectPlan plan = plan_of(levels, only, facts, asked, not_bounded);
-  plan.least_cost_s = plan.cost_s;
+  plan.min_cost_s = plan.cost_s;
   plan.replayed = true;
   return plan;
 }

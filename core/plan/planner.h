@@ -26,11 +26,11 @@ struct EffectPlan {
   EffectSet effects;
   std::vector<PlannedEffect> planned;  // those that apply, in the order in which they run
   ErrorBound budget;
-  ErrorBound error;         // the sum over all effects
-  double cost_s = 0.0;      // over all effects, too
-  double least_cost_s = 0;  // no plan within the budget costs less
-  bool in_time = true;      // false: no plan is as fast as was asked; this is the fastest
-  bool replayed = false;    // its levels are those of another run
+  ErrorBound error;       // the sum over all effects
+  double cost_s = 0.0;    // over all effects, too
+  double min_cost_s = 0;  // no plan within the budget costs less
+  bool in_time = true;    // false: no plan is as fast as was asked; this is the fastest
+  bool replayed = false;  // its levels are those of another run
 };
 
 /// Chooses one level for each effect: the cheapest levels whose errors sum up to no more than the
@@ -39,7 +39,7 @@ struct EffectPlan {
 ///
 /// The choice is a multiple-choice knapsack in four dimensions: multipliers by subgradients give a
 /// lower bound of the cost, and exchanges of one and two effects improve what they find. How far
-/// the plan may be from the optimum is `cost_s - least_cost_s`. Throws `Error` for a budget or a
+/// the plan may be from the optimum is `cost_s - min_cost_s`. Throws `Error` for a budget or a
 /// time that is negative or no number, and for an effect whose error or cost is none.
 EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFacts& facts,
                         const EffectSet& asked, const Accuracy& accuracy);

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double least_z = 1e-9;  // of a direction that a gnomonic lens images
+constexpr double min_z = 1e-9;  // of a direction that a gnomonic lens images
 
 }  // namespace
 
@@ -22,7 +22,7 @@ BrownConrady::BrownConrady(const std::array<double, 5>& values)
   for (const auto& positive : {std::array{1.0, -6 * p, 3 * k1, 0.0, 5 * k2, 0.0, 7 * k3},
                                std::array{1.0, -2 * p, k1, 0.0, k2, 0.0, k3},
                                std::array{4.0, -16 * p, 6 * k1, 0.0, 8 * k2, 0.0, 10 * k3}})
-    if (const auto root = first_root(positive, 1.0 / least_z)) limit_ = std::min(limit_, *root);
+    if (const auto root = first_root(positive, 1.0 / min_z)) limit_ = std::min(limit_, *root);
 }
 
 double BrownConrady::rim() const { return std::numeric_limits<double>::infinity(); }
@@ -90,7 +90,7 @@ std::optional<std::array<double, 3>> BrownConrady::direction_of(double x, double
 }
 
 std::optional<std::array<double, 2>> BrownConrady::image_of(double x, double y, double z) const {
-  if (!(z > least_z)) return std::nullopt;
+  if (!(z > min_z)) return std::nullopt;
   const Place at{x / z, y / z};
   if (!(std::hypot(at.x, at.y) < limit_)) return std::nullopt;
   const Distorted image = distort(at);

@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 constexpr double wanted_px = 0.05;
-constexpr int most_cells = 64, sky_parts = 96;
+constexpr int max_cells = 64, sky_parts = 96;
 constexpr double unit_of_nodes = 1.0 / (1 << 30);
 
 /// Weights of the cubic through values at -1, 0, 1 and 2.
@@ -93,13 +93,13 @@ void find_sky(const Wcs& wcs, int columns, int rows, DirectionGrid& grid) {
 DirectionGrid direction_grid(const Wcs& wcs, int columns, int rows) {
   DirectionGrid grid;
   const std::vector<Probe> probes = probes_of(wcs, columns, rows);
-  for (int cells = 2; cells <= most_cells; cells *= 2) {
+  for (int cells = 2; cells <= max_cells; cells *= 2) {
     const Nodes nodes(wcs, columns, rows, cells, cells);
     grid.error_px = 0.0;
     for (const Probe& p : probes)
       grid.error_px =
           std::max(grid.error_px, norm(nodes.direction(p.pixel) - p.direction) / p.pixel_rad);
-    if (grid.error_px > wanted_px && cells < most_cells) continue;
+    if (grid.error_px > wanted_px && cells < max_cells) continue;
     grid.across = grid.down = cells;
     grid.nodes = nodes.packed();
     break;

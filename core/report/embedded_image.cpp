@@ -49,17 +49,16 @@ double noise_of(const std::vector<float>& pixels) {
 
 }  // namespace
 
-EmbeddedImage embed(const CountImage& counts, std::size_t most_pixels) {
+EmbeddedImage embed(const CountImage& counts, std::size_t max_pixels) {
   EmbeddedImage out;
   const auto size = [&](int pixels) { return std::max(1, (pixels + out.bin - 1) / out.bin); };
-  while (std::size_t(size(counts.columns)) * std::size_t(size(counts.rows)) > most_pixels)
-    ++out.bin;
+  while (std::size_t(size(counts.columns)) * std::size_t(size(counts.rows)) > max_pixels) ++out.bin;
   out.columns = size(counts.columns);
   out.rows = size(counts.rows);
   const std::vector<float> pixels = means(counts, out.bin, out.columns, out.rows);
   const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
   const double exact = 1.0 / (double(out.bin) * out.bin);  // means are its multiples
-  out.least_dn = double(*least);
+  out.min_dn = double(*least);
   out.step_dn = std::max(
       {exact, noise_of(pixels) / steps_of_noise, (double(*most) - double(*least)) / 65535.0});
   // As differences from the left, and of the first column from above, which deflate better.
@@ -69,7 +68,7 @@ EmbeddedImage embed(const CountImage& counts, std::size_t most_pixels) {
     std::uint16_t left = above;
     for (int x = 0; x < out.columns; ++x, ++i) {
       const auto number =
-          std::uint16_t(std::lround((double(pixels[i]) - out.least_dn) / out.step_dn));
+          std::uint16_t(std::lround((double(pixels[i]) - out.min_dn) / out.step_dn));
       differences[i] = std::uint16_t(number - left);
       left = number;
       if (x == 0) above = number;

@@ -7,10 +7,10 @@ namespace dmise {
 DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings) {
   DrawnFrames c;
   const std::size_t total = run.frames.size();
-  c.every = std::max<std::size_t>(1, (total + settings.most_frames - 1) / settings.most_frames);
+  c.every = std::max<std::size_t>(1, (total + settings.max_frames - 1) / settings.max_frames);
   const std::size_t sources = std::max(run.truths.size(), run.detections.size()) / c.every;
   c.source_every =
-      std::max<std::size_t>(1, (sources + settings.most_sources - 1) / settings.most_sources);
+      std::max<std::size_t>(1, (sources + settings.max_sources - 1) / settings.max_sources);
   c.row_of.assign(total, 0);
   c.with_sources.assign(total, false);
   std::vector<std::size_t> seen(run.sensors.size()), kept(run.sensors.size());
@@ -32,12 +32,12 @@ DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings
     ++sensors;
     megapixels += camera.columns > 0 ? 1e-6 * camera.columns * camera.rows : 8.0;
   }
-  const auto share = std::size_t(std::max(
-      1.0, std::min(double(settings.most_views) / double(std::max<std::size_t>(1, sensors)),
-                    settings.most_megapixels / std::max(1e-6, megapixels))));
+  const auto share = std::size_t(
+      std::max(1.0, std::min(double(settings.max_views) / double(std::max<std::size_t>(1, sensors)),
+                             settings.max_megapixels / std::max(1e-6, megapixels))));
   for (const auto& rows : able) {
     const std::size_t wanted = std::min(share, rows.size());
-    for (std::size_t k = 0; k < wanted && c.viewed.size() < settings.most_views; ++k)
+    for (std::size_t k = 0; k < wanted && c.viewed.size() < settings.max_views; ++k)
       c.viewed.push_back(rows[k * rows.size() / wanted]);
   }
   std::ranges::sort(c.viewed);

@@ -7,11 +7,11 @@
 namespace dmise {
 
 struct ReportSettings {
-  std::size_t most_views = 200;              // frames that can be opened with their pixels
-  double most_megapixels = 500.0;            // of FITS files that are read for them
-  std::size_t most_pixel_bytes = 6'000'000;  // of these pixels in the page
-  std::size_t most_frames = 6000;            // of which curves are drawn
-  std::size_t most_sources = 12000;          // of truth, likewise of detections
+  std::size_t max_views = 200;              // frames that can be opened with their pixels
+  double max_megapixels = 500.0;            // of FITS files that are read for them
+  std::size_t max_pixel_bytes = 6'000'000;  // of these pixels in the page
+  std::size_t max_frames = 6000;            // of which curves are drawn
+  std::size_t max_sources = 12000;          // of truth, likewise of detections
 };
 
 /// Which frames the page draws, and which of them can be opened with their pixels.

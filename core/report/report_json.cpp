@@ -18,8 +18,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_stars = 60;  // marked in a frame
-constexpr std::size_t most_tracks = 300, most_cues = 500, most_ticks = 4000, most_files = 300;
+constexpr std::size_t max_stars = 60;  // marked in a frame
+constexpr std::size_t max_tracks = 300, max_cues = 500, max_ticks = 4000, max_files = 300;
 
 double rounded(double value, int digits) {
   const double scale = std::pow(10.0, digits);
@@ -74,17 +74,17 @@ class SkyPlace {
 
 /// Everything of one frame that is read from its FITS file; the problem if it can't be read.
 std::string view_of(const RunContents& run, const ReportFrame& row, const StarMap* stars,
-                    std::size_t most_pixels) {
+                    std::size_t max_pixels) {
   JsonWriter json;
   json.begin_object();
   try {
     const Frame frame = read_frame(run.directory + "/" + row.fits);
     const FrameHeader& h = frame.header;
     const int columns = frame.counts.columns, rows = frame.counts.rows;
-    const EmbeddedImage image = embed(frame.counts, most_pixels);
+    const EmbeddedImage image = embed(frame.counts, max_pixels);
     json.field("columns", columns).field("rows", rows).field("bin", image.bin);
     json.field("across", image.columns).field("down", image.rows);
-    json.field("least_dn", image.least_dn).field("step_dn", image.step_dn);
+    json.field("least_dn", image.min_dn).field("step_dn", image.step_dn);
     json.field("pixels", image.pixels);
     json.field("band", h.band.name).field("exposure_s", h.exposure_s);
     if (h.unknown.has(FrameFact::pointing)) return json.end_object().take();
@@ -116,7 +116,7 @@ std::string view_of(const RunContents& run, const ReportFrame& row, const StarMa
     if (stars && h.observation.start_mjd) {
       const double jyear = 2000.0 + (*h.observation.start_mjd - 51544.5) / 365.25;
       json.key("stars").begin_array();
-      for (const StarInFrame& s : stars_in_frame(*stars, h.wcs, columns, rows, jyear, most_stars)) {
+      for (const StarInFrame& s : stars_in_frame(*stars, h.wcs, columns, rows, jyear, max_stars)) {
         json.begin_array().value(s.id);
         pixel(json, s.pixel);
         json.value(degrees(s.ra_rad)).value(degrees(s.dec_rad));
@@ -303,7 +303,7 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
   };
   std::ranges::stable_sort(tracks, std::ranges::greater(), rank);
   json.field("track_count", tracks.size());
-  if (tracks.size() > most_tracks) tracks.resize(most_tracks);
+  if (tracks.size() > max_tracks) tracks.resize(max_tracks);
   json.key("tracks").begin_array();
   std::size_t curves = 0;
   for (const ReportTrack* t : tracks) {
@@ -325,7 +325,7 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
     json.end_object();
   }
   json.end_array().field("cue_count", run.cues.size()).key("cues").begin_array();
-  for (std::size_t k = 0; k < std::min(most_cues, run.cues.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(max_cues, run.cues.size()); ++k) {
     const Task& cue = run.cues[k];
     json.begin_object().field("sensor", cue.sensor).field("track", cue.track);
     json.field("name", cue.name).field("number", cue.catalogue_number);
@@ -349,7 +349,7 @@ void write_clock(const RunContents& run, JsonWriter& json) {
     json.begin_array().value(name).value(rounded(seconds, 2)).end_array();
   json.end_array().field("tick_count", run.ticks.size());
   json.key("ticks").begin_array();
-  const std::size_t first = run.ticks.size() > most_ticks ? run.ticks.size() - most_ticks : 0;
+  const std::size_t first = run.ticks.size() > max_ticks ? run.ticks.size() - max_ticks : 0;
   for (std::size_t k = first; k < run.ticks.size(); ++k) {
     const ReportTick& t = run.ticks[k];
     json.begin_array().value(std::int64_t(t.tick)).value(rounded(t.granted_s, 4));
@@ -387,16 +387,16 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
   write_plan(run, json);
   write_tracks(run, json);
   write_clock(run, json);
-  json.list("files", std::span(run.files).first(std::min(most_files, run.files.size())));
+  json.list("files", std::span(run.files).first(std::min(max_files, run.files.size())));
   // Differences of noise in thirds of it take 4.6 bits a pixel.
-  const std::size_t most_pixels =
-      std::clamp<std::size_t>(std::size_t(double(settings.most_pixel_bytes) * 0.75 * 8 / 4.6) /
+  const std::size_t max_pixels =
+      std::clamp<std::size_t>(std::size_t(double(settings.max_pixel_bytes) * 0.75 * 8 / 4.6) /
                                   std::max<std::size_t>(1, choice.viewed.size()),
                               30'000, 1'500'000);
   std::vector<std::string> views(choice.viewed.size());
   threads.for_ranges(views.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      views[k] = view_of(run, run.frames[choice.frames[choice.viewed[k]]], stars, most_pixels);
+      views[k] = view_of(run, run.frames[choice.frames[choice.viewed[k]]], stars, max_pixels);
   });
   json.key("views").begin_array();
   for (const std::string& view : views) json.raw(view);

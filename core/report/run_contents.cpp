@@ -198,7 +198,7 @@ std::string of_fusion(const std::string& directory, const RunFile& file) {
 }
 
 void read_tracks(RunContents& run) {
-  constexpr std::size_t most_points = 400;  // of a track
+  constexpr std::size_t max_points = 400;  // of a track
   std::map<std::uint32_t, ReportTrack> tracks;
   if (const std::string path = of_fusion(run.directory, run_file::tracks); !path.empty())
     for_lines(path, quietly, [&](const JsonRecord& line) {
@@ -219,7 +219,7 @@ void read_tracks(RunContents& run) {
     });
   for (auto& [id, track] : tracks) {
     auto& points = track.sigma_m;
-    if (const std::size_t every = (points.size() + most_points - 1) / most_points; every > 1) {
+    if (const std::size_t every = (points.size() + max_points - 1) / max_points; every > 1) {
       std::size_t kept = 0;
       for (std::size_t k = 0; k < points.size(); k += every) points[kept++] = points[k];
       points.resize(kept);

@@ -10,16 +10,16 @@ namespace dmise {
 std::vector<StarInFrame> stars_in_frame(const StarMap& map, const Wcs& wcs, int columns, int rows,
                                         double jyear, std::size_t most) {
   const Vec<Gcrs> axis = wcs_direction(wcs, {0.5 * (columns - 1), 0.5 * (rows - 1)});
-  double least_cosine = 1.0;
+  double min_cosine = 1.0;
   for (int k = 0; k <= 8; ++k)
     for (const PixelPosition edge :
          {PixelPosition{columns * k / 8.0, 0.0}, PixelPosition{columns * k / 8.0, double(rows)},
           PixelPosition{0.0, rows * k / 8.0}, PixelPosition{double(columns), rows * k / 8.0}})
-      least_cosine = std::min(least_cosine, dot(wcs_direction(wcs, edge), axis));
+      min_cosine = std::min(min_cosine, dot(wcs_direction(wcs, edge), axis));
   const auto& stars = map.stars;
   const double years = jyear - stars.epoch_jyear;
   const double radius_rad =
-      std::min(pi, std::acos(std::clamp(least_cosine, -1.0, 1.0)) +
+      std::min(pi, std::acos(std::clamp(min_cosine, -1.0, 1.0)) +
                        std::abs(years) * map.index.fastest_motion_rad_per_yr + 0.1 * deg);
   std::vector<StarInFrame> out;
   std::vector<std::uint32_t> found;

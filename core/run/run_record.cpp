@@ -117,11 +117,11 @@ Breakup breakup_of(const JsonRecord& object) {
                 .scale = event[1],
                 .projectile_mass_kg = event[2],
                 .relative_speed_m_per_s = event[3],
-                .least_length_m = event[4]},
+                .min_length_m = event[4]},
       .seed = object.has("seed") ? std::optional(object.get<std::uint64_t>("seed")) : std::nullopt,
       .parent = {{v[2], v[3], v[4]}, {v[5], v[6], v[7]}},
       .epoch = {v[0], v[1]}};
-  const double pieces = pieces_over(breakup.event, breakup.event.least_length_m);
+  const double pieces = pieces_over(breakup.event, breakup.event.min_length_m);
   if (!(pieces >= 1.0 && pieces < max_fragments + 1.0))
     object.fail("event", "a breakup has 1 to " + std::to_string(max_fragments) + " fragments");
   return breakup;

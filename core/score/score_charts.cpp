@@ -11,16 +11,16 @@ namespace {
 
 // Colour-blind safe colours (Okabe and Ito).
 constexpr Colour blue = {0, 114, 178}, orange = {230, 159, 0}, red = {213, 94, 0};
-constexpr double least_snr = 1.0;
+constexpr double min_snr = 1.0;
 
 ChartAxis snr_axis(const Score& score) {
   double most = 100.0;
   for (const ScoredTruth& t : score.truths) most = std::max(most, 1.2 * t.snr.value_or(0.0));
   return {.label = "expected SNR of the matched filter",
-          .least = least_snr,
+          .least = min_snr,
           .most = most,
           .logarithmic = true,
-          .ticks = logarithmic_ticks(least_snr, most)};
+          .ticks = logarithmic_ticks(min_snr, most)};
 }
 
 ChartAxis linear_axis(const char* label, double least, double most, double step) {
@@ -39,7 +39,7 @@ void add_mark(ChartSeries& series, ChartPoint at, double arm) {
 /// Root mean square of the errors of clean detections in bins of SNR, as a line.
 std::vector<ChartPoint> rms_line(const Score& score, std::optional<double> MatchErrors::*error) {
   std::vector<ChartPoint> line;
-  for (double low = least_snr; low < 1e6; low *= std::sqrt(2.0)) {
+  for (double low = min_snr; low < 1e6; low *= std::sqrt(2.0)) {
     double sum = 0.0;
     int count = 0;
     for (const ScoredTruth& t : score.truths) {
@@ -83,11 +83,11 @@ Chart detection_chart(const Score& score) {
   chart.y.least = -0.04;
   chart.y.most = 1.04;
   ChartSeries theory{.label = "theory", .colour = orange, .lines = {{}}};
-  for (double snr = least_snr; snr < chart.x.most; snr *= 1.01)
+  for (double snr = min_snr; snr < chart.x.most; snr *= 1.01)
     theory.lines[0].push_back({snr, theory_of_detection(snr, score.settings.threshold_snr)});
   ChartSeries measured{.label = "measured", .colour = blue};
   for (const Bin& bin : score.sensors.back().by_snr) {
-    const double low = std::max(least_snr, bin.from.value_or(least_snr));
+    const double low = std::max(min_snr, bin.from.value_or(min_snr));
     const double high = std::min(chart.x.most, bin.to.value_or(chart.x.most));
     if (!(high > low)) continue;
     const double at = std::sqrt(low * high), share = double(bin.found) / double(bin.truths);
@@ -104,10 +104,10 @@ Chart position_chart(const Score& score) {
   chart.title = "Error of position across the trail";
   chart.subtitle = "over its Cramer-Rao bound; the best detector has an rms of 1";
   chart.y = linear_axis("error / bound", -5.0, 5.0, 1.0);
-  chart.series.push_back({.label = "bound",
-                          .colour = orange,
-                          .lines = {{{least_snr, 1.0}, {chart.x.most, 1.0}},
-                                    {{least_snr, -1.0}, {chart.x.most, -1.0}}}});
+  chart.series.push_back(
+      {.label = "bound",
+       .colour = orange,
+       .lines = {{{min_snr, 1.0}, {chart.x.most, 1.0}}, {{min_snr, -1.0}, {chart.x.most, -1.0}}}});
   return chart;
 }
 
@@ -125,7 +125,7 @@ Chart magnitude_chart(const Score& score) {
   chart.series.push_back(
       {.label = "bound",
        .colour = orange,
-       .lines = {{{least_snr, 1.0857 / least_snr}, {chart.x.most, 1.0857 / chart.x.most}}}});
+       .lines = {{{min_snr, 1.0857 / min_snr}, {chart.x.most, 1.0857 / chart.x.most}}}});
   return chart;
 }
 

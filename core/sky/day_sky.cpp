@@ -28,20 +28,20 @@ double azimuth_of_node(std::size_t i) { return pi * double(i) / (azimuth_nodes -
 class PieceGases {
  public:
   static constexpr std::size_t water_nodes = 24, mixed_nodes = 12;
-  static constexpr double most_water_mm = 4000.0, most_mixed = 80.0;
+  static constexpr double max_water_mm = 4000.0, max_mixed = 80.0;
 
   explicit PieceGases(std::vector<double> depths) : depths_(std::move(depths)) {}
 
   /// Amounts at nodes, which are denser towards none.
   static double water_of_node(std::size_t i) {
-    return most_water_mm * std::pow(double(i) / (water_nodes - 1), 4);
+    return max_water_mm * std::pow(double(i) / (water_nodes - 1), 4);
   }
   static double mixed_of_node(std::size_t i) {
-    return most_mixed * std::pow(double(i) / (mixed_nodes - 1), 4);
+    return max_mixed * std::pow(double(i) / (mixed_nodes - 1), 4);
   }
   double transmission(double water_mm, double mixed) const {
-    const TablePlace w = place(water_mm / most_water_mm, water_nodes),
-                     u = place(mixed / most_mixed, mixed_nodes);
+    const TablePlace w = place(water_mm / max_water_mm, water_nodes),
+                     u = place(mixed / max_mixed, mixed_nodes);
     const auto along = [&](std::size_t row) {
       const double* d = depths_.data() + row * mixed_nodes + u.node;
       return d[0] + u.part * (d[1] - d[0]);
@@ -270,8 +270,8 @@ struct DaySky::Sums {
   std::vector<double> diffuse_modes(const DiffuseLight& diffuse, const LineThroughShells& line,
                                     const std::vector<double>& reaches) const {
     // Lines rise over the curved ground: their altitude is that over where most air is.
-    constexpr double most_air_m = 3e3;
-    const double ground_m = shells.radius_m(0), r = ground_m + most_air_m;
+    constexpr double max_air_m = 3e3;
+    const double ground_m = shells.radius_m(0), r = ground_m + max_air_m;
     const double sine = std::sqrt(1.0 - ground_m * ground_m / (r * r) *
                                             (1.0 - line.sin_altitude * line.sin_altitude));
     std::vector<double> modes;

@@ -85,9 +85,9 @@ class ModeOfLight {
                                      air_.sunlight.front()
                                : 0.0;  // radiance
     std::vector<double> sum(levels * std::size_t(count_), 0.0);
-    constexpr int most_orders = 300;
+    constexpr int max_orders = 300;
     constexpr double faint = 1e-5;
-    for (int order = 1; order <= most_orders; ++order) {
+    for (int order = 1; order <= max_orders; ++order) {
       pass(source, ground, light);
       const double down = flux_down(light.front());
       if (mode_ == 0) downward_ += down;

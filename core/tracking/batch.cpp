@@ -78,7 +78,7 @@ std::string_view descend(const BatchProblem& problem, const BatchSettings& setti
   if (const auto reason = problem.linearise(state, true, linear); !reason.empty()) return reason;
   double lambda = 1e-6;
   double cost = cost_of(linear, taken, settings.huber_sigma);
-  while (iterations < settings.most_iterations) {
+  while (iterations < settings.max_iterations) {
     ++iterations;
     normal = normal_of(problem.unknowns(), linear, weights_of(linear, taken, settings.huber_sigma));
     if (!normal.usable) return "the observations do not determine the orbit";

@@ -18,7 +18,7 @@ struct BatchSettings {
   double huber_sigma = 0.0;
   // Observations beyond are left out after a fit, and the rest is fitted again; 0: none are.
   double reject_sigma = 0.0;
-  int most_iterations = 50;
+  int max_iterations = 50;
   PropagationSettings propagation;
 };
 

@@ -110,7 +110,7 @@ std::string_view integrate(const ForceModel& forces, const ForceSettings& acting
   Triple<T> slope, end_slope;
   bool known = false;
   for (int count = 0; left_s > 0; ++count) {
-    if (count == settings.most_steps) return "the path takes too many steps";
+    if (count == settings.max_steps) return "the path takes too many steps";
     const bool last = length_s >= left_s;
     const double h = sense * (last ? left_s : length_s);
     const ForceInputs around = forces.surroundings(start + sim_seconds(sense * done_s + h / 2));

@@ -16,7 +16,7 @@
 namespace dmise {
 namespace {
 
-constexpr int places = 25, unknowns = 6, most_rounds = 40;
+constexpr int places = 25, unknowns = 6, max_rounds = 40;
 constexpr double longest_arc_s = 86400.0;
 constexpr double drag_of_bstar_m2_per_kg = 12.741621;
 
@@ -140,7 +140,7 @@ Outcome<MeanElementsFit> fit_mean_elements(const Clock& clock, const ForceModel&
   auto rows = fit.residuals_m(x);
   if (!rows) return Result::refused("SGP4 has no path for such elements");
   double damping = 1e-6;
-  for (int round = 0; round < most_rounds && damping < 1e6; ++round) {
+  for (int round = 0; round < max_rounds && damping < 1e6; ++round) {
     const auto slopes = fit.slopes(x);
     if (!slopes) return Result::refused("SGP4 has no path for such elements");
     Eigen::Matrix<double, unknowns, unknowns> normal = slopes->transpose() * *slopes;

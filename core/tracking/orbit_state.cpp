@@ -68,7 +68,7 @@ double apogee_m(const OrbitState& state) {
 }
 
 bool within(const OrbitLimits& limits, const OrbitState& state) {
-  if (!is_sane(state) || !(perigee_m(state) >= limits.least_perigee_m)) return false;
+  if (!is_sane(state) || !(perigee_m(state) >= limits.min_perigee_m)) return false;
   const double apogee = apogee_m(state);
   return apogee <= limits.largest_apogee_m || (limits.open && std::isinf(apogee));
 }

@@ -51,7 +51,7 @@ double apogee_m(const OrbitState& state);
 
 /// What an orbit near the Earth may be; candidates beyond are left out.
 struct OrbitLimits {
-  double least_perigee_m = 6.478e6;  // from the Earth's centre
+  double min_perigee_m = 6.478e6;  // from the Earth's centre
   double largest_apogee_m = 5e8;
   bool open = false;  // parabolas and hyperbolas are taken
 };

@@ -10,12 +10,12 @@ namespace dmise {
 /// Dormand-Prince 5(4) with steps by the estimated error of each.
 struct PropagationSettings {
   double position_tolerance_m = 1e-5;  // of one step, > 0
-  int most_steps = 200000;
+  int max_steps = 200000;
 };
 
 /// The state at `to`, earlier or later. Error against the forces' exact solution: below 0.1 m
 /// after a day near the Earth with the default tolerance. Refuses a state that is not sane, a path
-/// that enters the Earth (below 6,356 km from the centre) and more than `most_steps` steps.
+/// that enters the Earth (below 6,356 km from the centre) and more than `max_steps` steps.
 Outcome<OrbitState> propagate(const ForceModel& forces, const OrbitState& state, SimTime to,
                               const PropagationSettings& settings = {});
 

@@ -186,12 +186,12 @@ void describe(const Follower& object, SimTime rise, SimTime set, Pass& pass) {
   pass.rise = object.moment(rise);
   pass.top = object.moment(peak([&](const Place& p) { return object.height(p); }).time());
   pass.set = object.moment(set);
-  pass.least_range_m = peak([](const Place& p) { return -p.range_m(); }).range_m();
+  pass.min_range_m = peak([](const Place& p) { return -p.range_m(); }).range_m();
   if (!pass.top.sun_elevation_rad) return;
-  pass.least_sun_elevation_rad = *pass.top.sun_elevation_rad;
+  pass.min_sun_elevation_rad = *pass.top.sun_elevation_rad;
   for (std::size_t k = 0; k <= 16; ++k)
-    pass.least_sun_elevation_rad =
-        std::min(pass.least_sun_elevation_rad,
+    pass.min_sun_elevation_rad =
+        std::min(pass.min_sun_elevation_rad,
                  object.sun_elevation_rad(places[(places.size() - 1) * k / 16].camera));
 }
 

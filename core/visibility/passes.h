@@ -23,10 +23,10 @@ struct Pass {
   bool open_start = false;    // in sight before the span
   bool open_end = false;      // in sight after the span
   bool excluded = false;      // flagged: a body is nearer to the axis than the camera allows
-  double least_range_m = 0.0;
+  double min_range_m = 0.0;
   double lit_s = 0.0;                       // sunlit time within the pass
   std::optional<SimTime> lit_from, lit_to;  // first and last sunlit instant
-  double least_sun_elevation_rad = 0.0;     // minimum over the pass, at the site; 0 in orbit
+  double min_sun_elevation_rad = 0.0;       // minimum over the pass, at the site; 0 in orbit
 };
 
 /// Accuracy of rise, set and shadow; the top is within a tenth of a second.

@@ -7,8 +7,8 @@
 namespace dmise {
 namespace {
 
-constexpr double nearest_m = 1e-3;   // of a place that a camera looks at
-constexpr double least_sine = 1e-6;  // between boresight and up
+constexpr double nearest_m = 1e-3;  // of a place that a camera looks at
+constexpr double min_sine = 1e-6;   // between boresight and up
 
 Rotation<CameraFrame, Gcrs> at_direction(const Vec<Gcrs>& direction, double roll_rad) {
   const auto [ra, dec] = to_spherical(direction);
@@ -80,7 +80,7 @@ struct Aim {
     const Vec<Enu> z = unit(line);
     Vec<Enu> side = cross(z, p.up);
     // If the line is along `up`, an axis that is not takes its place.
-    if (norm(side) < least_sine)
+    if (norm(side) < min_sine)
       side = cross(z, std::abs(z.y) < 0.9 ? Vec<Enu>{0, 1, 0} : Vec<Enu>{0, 0, 1});
     const Vec<Enu> x = unit(side), y = cross(z, x);
     Rotation<CameraFrame, Enu> camera;

@@ -14,7 +14,7 @@ namespace dmise {
 namespace {
 
 /// A target closer than this is the sensor's own platform, under another number.
-constexpr double least_distance_m = 1.0;
+constexpr double min_distance_m = 1.0;
 
 }  // namespace
 
@@ -117,7 +117,7 @@ CameraMoment SensorTrack::camera_at(SimTime t) const {
     now.there = target.has_value();
     if (!now.there) return now;
     scene.towards_target = target->position_m - scene.observer.position_m;
-    now.there = norm(scene.towards_target) > least_distance_m;
+    now.there = norm(scene.towards_target) > min_distance_m;
     if (!now.there) return now;
     if (geometric_) {
       // `Sight` uses straight lines: relative to them the target is off the axis, at its apparent

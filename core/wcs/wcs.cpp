@@ -90,8 +90,8 @@ std::optional<PixelPosition> wcs_pixel(const Wcs& wcs, const Vec<Gcrs>& directio
   double v = vv + evaluate(wcs.bp, wcs.order, uu, vv).value;
   const double tolerance = 1e-9 + 1e-14 * (std::abs(u) + std::abs(v));
   // The slope of the refraction, below 0.2, is ignored: each step leaves a fifth of the error.
-  const int most_steps = air ? 40 : 20;
-  for (int i = 0; i < most_steps; ++i) {
+  const int max_steps = air ? 40 : 20;
+  for (int i = 0; i < max_steps; ++i) {
     const PolynomialValue f = evaluate(wcs.a, wcs.order, u, v);
     const PolynomialValue g = evaluate(wcs.b, wcs.order, u, v);
     const PixelPosition by = air ? air->at({u + wcs.crpix_x, v + wcs.crpix_y}) : PixelPosition{};

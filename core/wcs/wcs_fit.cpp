@@ -21,11 +21,11 @@ constexpr double good_px = 0.08;  // of a WCS as a whole
 constexpr double good_low_order_px = 0.01;
 constexpr int highest_order = 9;  // of SIP, by its convention
 constexpr double good_table_px = 0.06;
-constexpr double least_cell_px = 3.0;
+constexpr double min_cell_px = 3.0;
 // Nothing is fitted near the antipode of the axis, where a projection diverges.
 constexpr double farthest_fitted_cos = -0.9;
 constexpr double low_rad = 20 * deg;  // above it polynomials represent refraction
-constexpr int most_nodes = 400;       // of a lookup table's longer side
+constexpr int max_nodes = 400;        // of a lookup table's longer side
 
 struct Sample {
   PixelPosition pixel;
@@ -252,7 +252,7 @@ double Fit::table_error_px(const Wcs& w) const {
 void Fit::choose_table(Wcs& w) const {
   const double longer = std::max(optics_.columns, optics_.rows);
   double& cell = w.refraction->cell_px;
-  const double least = std::max(least_cell_px, longer / (most_nodes - 2));
+  const double least = std::max(min_cell_px, longer / (max_nodes - 2));
   cell = std::max(least, longer / 48);
   for (int pass = 0; pass < 3; ++pass) {
     const double error = table_error_px(w);

@@ -169,11 +169,11 @@ ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs&
 }
 
 void print_outlook(const Scenario& scenario, const ScenarioInputs& scene, const Clock& clock) {
-  constexpr std::size_t most_sensors = 16;
+  constexpr std::size_t max_sensors = 16;
   Scenario first = scenario;
-  first.sensors.resize(std::min(scenario.sensors.size(), most_sensors));
+  first.sensors.resize(std::min(scenario.sensors.size(), max_sensors));
   const auto outlook =
-      scenario_outlook(first, scene, clock, {.most_frames = 3, .most_states = 500'000});
+      scenario_outlook(first, scene, clock, {.max_frames = 3, .max_states = 500'000});
   for (const auto& note : outlook.notes) print_note(note);
   for (const auto& sensor : outlook.sensors) print_note(sensor.sensor + ": " + short_text(sensor));
   for (const auto& warning : outlook.warnings) print_warning(warning);

@@ -29,7 +29,7 @@ std::string write_report(const std::string& directory, bool pixels, int threads)
   const auto processors = int(std::thread::hardware_concurrency());
   Threads pool(threads > 0 ? threads : std::clamp(processors, 1, 8));
   ReportSettings settings;
-  if (!pixels) settings.most_views = 0;
+  if (!pixels) settings.max_views = 0;
   const std::string path = path_in(directory, run_file::page);
   write_file_whole(path,
                    run_report(run, stars_of(run.record.star_catalogue).get(), pool, settings));

@@ -228,7 +228,7 @@ void check(const CheckOptions& options) {
   const ScenarioInputs scene = load_scene(scenario, clock);
   make_sensors(scenario, scene.stars);
   const auto outlook =
-      scenario_outlook(scenario, scene, clock, {.least_limb_angle_rad = options.limb_deg * deg});
+      scenario_outlook(scenario, scene, clock, {.min_limb_angle_rad = options.limb_deg * deg});
   if (options.json)
     print_json(scenario, outlook, clock, scene.stars != nullptr);
   else

@@ -70,12 +70,12 @@ struct ExplainedSensor {
 
 /// One line of a sensor: what its plans have in common.
 void print_plans(const ExplainedSensor& sensor, const CostFactors& factors) {
-  double least_s = INFINITY, most_s = 0.0;
+  double min_s = INFINITY, max_s = 0.0;
   int closed = 0, late = 0;
   for (const PlanSpan& span : sensor.spans) {
     const double cost_s = predicted_s(span.plan, factors);
-    least_s = std::min(least_s, cost_s);
-    most_s = std::max(most_s, cost_s);
+    min_s = std::min(min_s, cost_s);
+    max_s = std::max(max_s, cost_s);
     closed += span.shutter_closed;
     late += !span.plan.in_time;
   }
@@ -84,8 +84,8 @@ void print_plans(const ExplainedSensor& sensor, const CostFactors& factors) {
   if (!sensor.spans.empty()) {
     std::printf("; frames %u to %u have %zu plan%s, predicted %.3g",
                 sensor.spans.front().first_frame, sensor.spans.back().last_frame,
-                sensor.spans.size(), sensor.spans.size() == 1 ? "" : "s", least_s);
-    if (most_s > 1.005 * least_s) std::printf(" to %.3g", most_s);
+                sensor.spans.size(), sensor.spans.size() == 1 ? "" : "s", min_s);
+    if (max_s > 1.005 * min_s) std::printf(" to %.3g", max_s);
     std::printf(" s a frame without detection and files");
   }
   if (closed > 0) std::printf("; in %d the shutter is closed", closed);
@@ -138,7 +138,7 @@ void explain(const ExplainOptions& options) {
     const auto spans = plan_outlook(scenario, sensor, scene.population, clock, scene.stars.get(),
                                     threads, options.frames);
     const SensorOutlook outlook = sensor_outlook(scenario, sensor, scene.population, clock,
-                                                 scene.stars, threads, {.most_frames = 0});
+                                                 scene.stars, threads, {.max_frames = 0});
     if (options.json) {
       json.begin_object().field("sensor", sensor.name).field("accuracy", sensor.accuracy.name);
       if (outlook.mid_run) json.field("limiting_magnitude", outlook.mid_run->point_limit_v_mag);

@@ -40,7 +40,7 @@ struct VisibleOptions {
   int threads = 1;
 };
 
-constexpr double most_steps = 5e6;
+constexpr double max_steps = 5e6;
 
 TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, const Clock& clock) {
   SimTime from;
@@ -53,7 +53,7 @@ TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, cons
   }
   const double duration_s = options.duration_s.value_or(scenario.duration.seconds());
   const double steps = duration_s / options.step_s;
-  if (steps > most_steps)
+  if (steps > max_steps)
     throw ConfigError("--step: " + std::to_string(std::llround(steps)) +
                       " instants, more than 5000000: use a longer step or a shorter --duration");
   constexpr double longest_s = 9.2e9;  // 64 bits of nanoseconds
@@ -73,7 +73,7 @@ bool wanted(const Pass& pass, const VisibleOptions& options) {
   if (options.sunlit && !(pass.lit_s > 0.0)) return false;
   if (options.dark && pass.lit_s >= length_s - 2 * event_error_s) return false;
   return !options.night_deg || !pass.top.sun_elevation_rad ||
-         pass.least_sun_elevation_rad < *options.night_deg * deg;
+         pass.min_sun_elevation_rad < *options.night_deg * deg;
 }
 
 /// What is said of the passes that are kept.

@@ -58,7 +58,7 @@ std::vector<PassColumn> columns_of(const PassList& list) {
       {"top_elevation_deg", [](L, P p) { return elevation(p.top); }},
       {"set_azimuth_deg", [](L, P p) { return azimuth(p.set); }},
       {"set_elevation_deg", [](L, P p) { return elevation(p.set); }},
-      {"least_range_km", [](L, P p) { return of(p.least_range_m / 1e3, 3); }},
+      {"least_range_km", [](L, P p) { return of(p.min_range_m / 1e3, 3); }},
       {"top_rate_deg_per_s", [](L, P p) { return of(p.top.rate_rad_per_s / deg, 6); }},
       {"top_sunlit", [](L, P p) { return of(p.top.sunlit, 3); }},
       {"lit_from_utc", [](L l, P p) { return utc(l, p.lit_from); }},
@@ -133,7 +133,7 @@ std::string pass_table(const PassList& list, int rows, bool has_csv) {
     if (p.top.horizontal)
       text += formatted("  %5.1f deg  %5.1f deg", p.top.horizontal->elevation_rad / deg,
                         p.top.horizontal->azimuth_rad / deg);
-    text += formatted("  %7.0f km  %5.3f d/s  %-17s", p.least_range_m / 1e3,
+    text += formatted("  %7.0f km  %5.3f d/s  %-17s", p.min_range_m / 1e3,
                       p.top.rate_rad_per_s / deg, light(list, p).c_str());
     if (p.top.sun_elevation_rad) text += formatted("  %5.1f", *p.top.sun_elevation_rad / deg);
     if (p.excluded) text += "  excluded";

@@ -14,7 +14,7 @@ namespace {
 constexpr Colour colours[] = {{31, 119, 180},  {255, 127, 14}, {44, 160, 44},   {214, 39, 40},
                               {148, 103, 189}, {140, 86, 75},  {227, 119, 194}, {127, 127, 127},
                               {188, 189, 34},  {23, 190, 207}};
-constexpr double least_error = 1e-6;  // drawn for none
+constexpr double min_error = 1e-6;  // drawn for none
 
 double in_budgets(const ErrorBound& error) {
   double largest = 0.0;
@@ -52,9 +52,9 @@ Chart effects_chart(const std::vector<TradeoffRow>& rows, const ErrorKind& kind)
   Chart chart{.title = std::string("One effect at a time: ") + kind.key,
               .subtitle = "time of the frame over the reference's, at each level"};
   std::map<std::string, std::vector<ChartPoint>> lines;
-  std::vector<double> xs{1.0}, ys{least_error};
+  std::vector<double> xs{1.0}, ys{min_error};
   for (const auto& row : rows) {
-    if (row.effect == "budget" || !(row.measured.*kind.value > least_error)) continue;
+    if (row.effect == "budget" || !(row.measured.*kind.value > min_error)) continue;
     const ChartPoint at{row.seconds / row.reference_s, row.measured.*kind.value};
     lines[row.effect].push_back(at);
     xs.push_back(at.x);
@@ -82,8 +82,8 @@ Chart budgets_chart(const std::vector<TradeoffRow>& rows) {
   std::vector<double> xs, ys;
   for (const auto& row : rows) {
     if (row.effect != "budget") continue;
-    const ChartPoint at{row.seconds, std::max(least_error, in_budgets(row.measured))};
-    const ChartPoint limit{row.seconds, std::max(least_error, in_budgets(row.bound))};
+    const ChartPoint at{row.seconds, std::max(min_error, in_budgets(row.measured))};
+    const ChartPoint limit{row.seconds, std::max(min_error, in_budgets(row.bound))};
     measured_at.push_back(at);
     bound_at.push_back(limit);
     add_mark(measured, at);

@@ -25,7 +25,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_choice_bytes = 4e9;
+constexpr double max_choice_bytes = 4e9;
 
 /// K of "sites=K"; 0 without the option. `sites`: candidates.
 std::size_t wanted_sites(const std::string& text, std::size_t sites) {
@@ -99,7 +99,7 @@ class Survey {
         options_{.night_below_rad = command.night_deg * deg} {
     if (sites_ > 0 &&
         8.0 * double(candidates_.size()) * nights_ * double(population_.roster.objects.size()) >
-            most_choice_bytes)
+            max_choice_bytes)
       throw ConfigError(
           "--optimise: sites x nights x objects are too many: use a shorter "
           "duration_s");

@@ -16,9 +16,9 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_tracks = 10'000;  // of one tick; 16 MiB of a message are 25,000
-constexpr std::uint32_t most_exposures = 1000;
-constexpr double most_sigma_m = 1e12, most_sigma_m_per_s = 3e8;
+constexpr std::size_t max_tracks = 10'000;  // of one tick; 16 MiB of a message are 25,000
+constexpr std::uint32_t max_exposures = 1000;
+constexpr double max_sigma_m = 1e12, max_sigma_m_per_s = 3e8;
 
 constexpr std::array first_six{0, 1, 2, 3, 4, 5};
 
@@ -37,7 +37,7 @@ OrbitEstimate estimate_of(const Track& t) {
 void check_covariance(const Track& t) {
   const OrbitMatrix covariance = estimate_of(t).covariance;
   for (int row = 0; row < 6; ++row) {
-    const double limit = row < 3 ? most_sigma_m : most_sigma_m_per_s;
+    const double limit = row < 3 ? max_sigma_m : max_sigma_m_per_s;
     if (!(covariance(row, row) > 0 && covariance(row, row) <= limit * limit))
       throw Error(formatted("covariance: variance %d must be > 0 and at most %.3g, got %.9g", row,
                             limit * limit, covariance(row, row)));
@@ -146,8 +146,8 @@ OwnTracker::Told OwnTracker::ask(Tick tick, std::span<const SearchedFrame> frame
 }
 
 Tracker::Tracked OwnTracker::take(TrackSet&& set, std::span<const SearchedFrame> frames) {
-  if (set.tracks.size() > most_tracks)
-    throw Error("tracks: must be at most " + std::to_string(most_tracks) + ", got " +
+  if (set.tracks.size() > max_tracks)
+    throw Error("tracks: must be at most " + std::to_string(max_tracks) + ", got " +
                 std::to_string(set.tracks.size()));
   Sources sources;
   for (const SearchedFrame& frame : frames)
@@ -221,8 +221,8 @@ std::vector<CueWish> OwnTracker::wishes_of(const v1::OwnNodePoints& points) cons
       fail("has two tasks at one tick");
     if (!live_.contains(point.track()))
       fail("there is no live track " + std::to_string(point.track()));
-    if (point.exposures() > most_exposures)
-      fail("exposures: must be at most " + std::to_string(most_exposures) + ", got " +
+    if (point.exposures() > max_exposures)
+      fail("exposures: must be at most " + std::to_string(max_exposures) + ", got " +
            std::to_string(point.exposures()));
     out.push_back({.sensor = sensor, .track = point.track(), .exposures = point.exposures()});
   }

@@ -18,9 +18,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the layout is little endian");
 
-constexpr std::size_t most_tracks = 5000, most_detections = 200;  // of a frame
-constexpr std::size_t most_truths = 500;                          // of a frame, shown
-constexpr int points_per_side = 6;                                // of a field's border
+constexpr std::size_t max_tracks = 5000, max_detections = 200;  // of a frame
+constexpr std::size_t max_truths = 500;                         // of a frame, shown
+constexpr int points_per_side = 6;                              // of a field's border
 constexpr double unix_epoch_jd = 2440587.5;
 
 template <class F>
@@ -121,7 +121,7 @@ void LiveView::take(const DetectionSet& set) {
   sensor.detections_frame = set.frame;
   sensor.detections_total += set.detections.size();
   sensor.detections = set.detections;
-  if (sensor.detections.size() > most_detections) sensor.detections.resize(most_detections);
+  if (sensor.detections.size() > max_detections) sensor.detections.resize(max_detections);
   changed_.insert({MessageSlot::detections, MessageSlot::sensors});
 }
 
@@ -132,7 +132,7 @@ void LiveView::take(const TruthSet& set) {
   sensor.truths_frame = set.frame;
   sensor.truths.clear();
   for (const Truth& truth : set.truths)
-    if (truth.in_frame && sensor.truths.size() < most_truths) sensor.truths.push_back(truth);
+    if (truth.in_frame && sensor.truths.size() < max_truths) sensor.truths.push_back(truth);
   changed_.insert(MessageSlot::truth);
 }
 
@@ -140,7 +140,7 @@ void LiveView::take(const TrackSet& set) {
   for (const Track& track : set.tracks) {
     if (track.status == TrackStatus::lost)
       tracks_.erase(track.id);
-    else if (tracks_.contains(track.id) || tracks_.size() < most_tracks)
+    else if (tracks_.contains(track.id) || tracks_.size() < max_tracks)
       tracks_[track.id] = track;
   }
   time_s_ = std::max(time_s_, set.time.seconds());

@@ -24,7 +24,7 @@ constexpr milliseconds publish_interval{100}, hello_interval{500}, silence{2000}
 constexpr milliseconds roster_interval{2000};
 constexpr milliseconds receive_at_most{50};  // before viewers are told
 constexpr int unread_messages = 64;          // of the broker; further ones wait there, then drop
-constexpr std::size_t most_commands = 16;
+constexpr std::size_t max_commands = 16;
 
 // Topics that every viewer may see; truth has endpoints of its own.
 constexpr const char* topics[] = {objects_topic,    environment_topic, frame_prefix,
@@ -305,7 +305,7 @@ void RunObserver::run(const std::function<void()>& changed) {
 
 bool RunObserver::command(const ClockCommand& command) {
   const std::lock_guard lock(mutex_);
-  if (commands_.size() >= most_commands) return false;
+  if (commands_.size() >= max_commands) return false;
   commands_.push_back(command);
   has_commands_.set();
   return true;

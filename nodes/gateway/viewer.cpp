@@ -113,7 +113,7 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
   bool admits() {
     const auto at = Steady::now();
     if (at - second_ >= std::chrono::seconds(1)) second_ = at, commands_ = 0;
-    return ++commands_ <= hub_.options.most_commands_per_s;
+    return ++commands_ <= hub_.options.max_commands_per_s;
   }
 
   void obey(const CommandError& error) { answer(to_json("refused", error.reason)); }

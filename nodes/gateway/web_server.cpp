@@ -11,7 +11,7 @@ struct WebServer::Work {
         listener({.host = hub.options.host,
                   .port = hub.options.port,
                   .has_tokens = hub.options.tokens.any(),
-                  .most_connections = hub.options.most_connections},
+                  .max_connections = hub.options.max_connections},
                  hub.connections) {
     hub.thread = std::make_shared<ServerThread>(listener.io());
     listener.start([this](tcp::socket socket) { serve_http(hub, std::move(socket)); });

@@ -20,10 +20,10 @@ struct WebServerOptions {
   bool shows_truth = false;  // to viewers who may see it
 
   // Limits.
-  std::size_t most_connections = 64;
-  std::size_t most_commands_per_s = 20;  // of one viewer
-  double request_within_s = 10.0;        // the head of a request, and reading its answer
-  double idle_s = 30.0;                  // silence of a viewer that does not answer pings
+  std::size_t max_connections = 64;
+  std::size_t max_commands_per_s = 20;  // of one viewer
+  double request_within_s = 10.0;       // the head of a request, and reading its answer
+  double idle_s = 30.0;                 // silence of a viewer that does not answer pings
 };
 
 /// What the server shows.

@@ -242,11 +242,11 @@ void OwnActor::look_at_errors() {
   if (held_.size() < 3) return;
   const auto stated = stated_interpolation_error(
       HermiteOrder::cubic, scenario_.tick.seconds() * double(node_.period_ticks));
-  const double most_m = std::max(tolerated_error_m, stated ? stated->worst_m : 0.0);
+  const double max_m = std::max(tolerated_error_m, stated ? stated->worst_m : 0.0);
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (warned_[i] || !is_moved_by(node_, *objects_[i])) continue;
     const double error_m = cubic_error_m({&held_[0], &held_[1], &held_[2]}, i);
-    if (!(error_m > most_m) || error_m > 1e300) continue;
+    if (!(error_m > max_m) || error_m > 1e300) continue;
     warned_[i] = true;
     settings_.note(
         node_.name + ": " + objects_[i]->name +

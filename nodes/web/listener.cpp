@@ -69,7 +69,7 @@ void Listener::accept() {
       retry_.expires_after(std::chrono::milliseconds(100));
       return retry_.async_wait([this](error_code) { accept(); });
     }
-    if (connections_.make_room(options_.most_connections)) {
+    if (connections_.make_room(options_.max_connections)) {
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
       socket.set_option(boost::asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);

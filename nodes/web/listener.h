@@ -13,7 +13,7 @@ struct ListenOptions {
   unsigned short port = 0;  // 0: any free port
   bool has_tokens = false;
   const char* strangers_need = "needs a file of tokens";  // of addresses other than loopback
-  std::size_t most_connections = 64;
+  std::size_t max_connections = 64;
 };
 
 /// Accepts the connections of a server, and runs them in one thread.

@@ -20,7 +20,7 @@ constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
 constexpr double rate_limit_rad_per_s = 1e6;
 constexpr double albedo_limit = 1000.0;  // a glint is brighter than a diffuse sphere
 constexpr std::size_t text_limit_bytes = 16384;
-constexpr std::size_t most_path_numbers = 30000;
+constexpr std::size_t max_path_numbers = 30000;
 
 void frame_number(std::uint32_t frame) {
   if (frame == 0) refuse("frame", "counts from 1");
@@ -317,7 +317,7 @@ void check(const Task& t) {
     refuse("times", "must be given <= start <= on_target < end");
   if (t.path_m.size() < 6 || t.path_m.size() % 3 != 0 || t.path_m_per_s.size() != t.path_m.size())
     refuse("path_m", "must have 3 numbers of each of 2 points or more, as path_m_per_s");
-  if (t.path_m.size() > most_path_numbers) refuse("path_m", "is too long");
+  if (t.path_m.size() > max_path_numbers) refuse("path_m", "is too long");
   in_range(t.path_step_s, 1e-3, 1e6, "path_step_s");
   all_within(t.path_m, distance_limit_m, "path_m");
   all_within(t.path_m_per_s, speed_limit_m_per_s, "path_m_per_s");

@@ -33,7 +33,7 @@ ExpectedElectronImage sky_of(const FrameProducts& frame, double exposure_s) {
 }
 
 /// Charge that a pixel holds and the converter can count.
-double most_counted_e(const Detector& detector) {
+double max_counted_e(const Detector& detector) {
   const double counts = std::exp2(detector.adc_bits) - 1.0 - detector.bias_dn;
   return std::min(detector.full_well_e, counts * detector.gain_e_per_dn);
 }
@@ -83,7 +83,7 @@ FrameComparison::FrameComparison(const SceneFrames& scene, const FrameProducts& 
   const Detector detector = acting_detector(scene.sensor().camera.detector, effects);
   const double rest_e2 = detector.dark_e_per_s * scene.times().seconds() +
                          detector.read_noise_e * detector.read_noise_e;
-  full_e_ = saturated_share * most_counted_e(scene.sensor().camera.detector);
+  full_e_ = saturated_share * max_counted_e(scene.sensor().camera.detector);
   const std::size_t pixels = light_.pixels.size();
   sigma_e_.resize(pixels);
   background_.resize(pixels);
@@ -150,8 +150,8 @@ void FrameComparison::measure(ReferenceSource source) {
   source.whole = whole;
   const bool in_wings = rim_e * pixels > rim_share * e * rim_pixels;
   source.alone = !in_wings;
-  source.counts = whole && !saturated && source.snr >= PlanFacts::least_snr;
-  (source.snr >= PlanFacts::least_snr_of_source ? sources_ : faint_).push_back(std::move(source));
+  source.counts = whole && !saturated && source.snr >= PlanFacts::min_snr;
+  (source.snr >= PlanFacts::min_snr_of_source ? sources_ : faint_).push_back(std::move(source));
 }
 
 // Sources with a bright neighbour do not count: its light that moves over the edge of their capsule
@@ -248,7 +248,7 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
     });
     if (!source.counts) {
       // Too faint for photometry: the light that it lacks, in its brightest pixel.
-      if (source.whole && source.alone && source.snr < PlanFacts::least_snr)
+      if (source.whole && source.alone && source.snr < PlanFacts::min_snr)
         largest.background_sigma =
             std::max(largest.background_sigma, std::abs(e) / source.light_e * source.peak_sigma);
       continue;

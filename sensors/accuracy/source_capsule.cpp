@@ -23,11 +23,11 @@ double distance_px(PixelPosition p, const ReferenceSource& s) {
 
 std::vector<PixelPosition> line_along(PixelPosition from, PixelPosition via, PixelPosition to) {
   constexpr double off_px = 0.05;
-  constexpr int most_chords = 64;
+  constexpr int max_chords = 64;
   // At -1, 0 and 1: via + half * t + bend * t * t.
   const PixelPosition half = (to - from) * 0.5, bend = (to + from) * 0.5 - via;
   const double chords = std::ceil(std::sqrt(std::hypot(bend.x_px, bend.y_px) / off_px));
-  const int count = int(std::clamp(chords, 1.0, double(most_chords)));
+  const int count = int(std::clamp(chords, 1.0, double(max_chords)));
   std::vector<PixelPosition> line;
   for (int i = 0; i <= count; ++i) {
     const double t = 2.0 * i / count - 1.0;

@@ -12,7 +12,7 @@ struct AlpacaServer::Work {
         listener({.host = options.host,
                   .port = options.port,
                   .has_tokens = options.tokens.any(),
-                  .most_connections = options.most_connections},
+                  .max_connections = options.max_connections},
                  connections) {
     if (options.discovery_port > 0) discover();
   }

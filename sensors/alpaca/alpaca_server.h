@@ -15,7 +15,7 @@ struct AlpacaServerOptions {
   std::string location = {};  // what the management API says of it
 
   // Limits.
-  std::size_t most_connections = 64;
+  std::size_t max_connections = 64;
   double request_within_s = 10.0;  // a request, and reading its answer
   double idle_s = 60.0;            // between requests of a connection
   double slew_within_s = 600.0;    // an answer that waits for a slew

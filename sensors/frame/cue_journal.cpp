@@ -34,7 +34,7 @@ struct Words {
 };
 
 constexpr std::string_view task_word = "task", tick_word = "tick";
-constexpr std::uint32_t most_points = 100000;
+constexpr std::uint32_t max_points = 100000;
 
 std::shared_ptr<const Task> read_task(std::string_view line) {
   Words words{line.substr(task_word.size())};
@@ -45,7 +45,7 @@ std::shared_ptr<const Task> read_task(std::string_view line) {
     t->ns = words.next<std::int64_t>();
   task->path_step_s = words.next<double>();
   const auto points = words.next<std::uint32_t>();
-  if (!words.good || points < 2 || points > most_points) return nullptr;
+  if (!words.good || points < 2 || points > max_points) return nullptr;
   for (auto* path : {&task->path_m, &task->path_m_per_s})
     for (std::uint32_t i = 0; i < 3 * points && words.good; ++i)
       path->push_back(words.next<double>());

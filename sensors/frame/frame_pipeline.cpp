@@ -177,7 +177,7 @@ std::string FramePipeline::evaluator() const {
   return work_->evaluator ? work_->evaluator->description() : "";
 }
 
-std::uint32_t FramePipeline::most_frames_made_again() const {
+std::uint32_t FramePipeline::max_frames_made_again() const {
   const auto& sensor = work_->settings.sensor;
   const auto& detector = sensor.camera.detector;
   if (!sensor.effects.has(Persistence::facts) || !(detector.persistence_fraction > 0.0)) return 0;

@@ -81,7 +81,7 @@ class FrameMaker {
   /// `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
   virtual std::uint32_t first_frame_for(std::uint32_t frame) const { return frame; }
   /// Returns the most frames that a new pipeline must expose before its first one.
-  virtual std::uint32_t most_frames_made_again() const { return 0; }
+  virtual std::uint32_t max_frames_made_again() const { return 0; }
   /// Describes the OpenGL that draws points and sky; empty when they are deposited.
   virtual std::string evaluator() const { return ""; }
 };
@@ -101,7 +101,7 @@ class FramePipeline : public FrameMaker {
   void give_back(CountImage&& counts) override;
   std::uint32_t first_frame_for(std::uint32_t frame) const override;
   std::string evaluator() const override;
-  std::uint32_t most_frames_made_again() const override;
+  std::uint32_t max_frames_made_again() const override;
 
  private:
   struct Work;

@@ -133,13 +133,13 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
     h.air = view.weather();
     if (!ran.has(AtmosphericRefraction::facts)) h.air->pressure_hpa = 0.0;
   }
-  const double most_dn = std::exp2(detector.adc_bits) - 1;
+  const double max_dn = std::exp2(detector.adc_bits) - 1;
   const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *
                         (1.0 - 4.0 * detector.interpixel_coupling);  // what is left of a full one
   const double well_dn = well_e / h.gain_e_per_dn + h.bias_dn;
   // Without noise a full pixel has this count, or one more.
   h.saturation_dn =
-      detector.well_is_limited ? std::min(most_dn, std::floor(well_dn + 1e-6)) : most_dn;
+      detector.well_is_limited ? std::min(max_dn, std::floor(well_dn + 1e-6)) : max_dn;
   const SimTime at[3] = {times.start, times.middle, times.end};
   for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
 

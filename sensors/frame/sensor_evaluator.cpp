@@ -113,7 +113,7 @@ Tick SensorEvaluator::look_back() const {
     const ExposureSpan span = exposure_span(sensor_, frame);
     exposure = std::max(exposure, span.end - span.start);
   }
-  const auto frames = std::min(frames_->most_frames_made_again(), last_frame_);
+  const auto frames = std::min(frames_->max_frames_made_again(), last_frame_);
   const SimTime earlier{frames * sim_seconds(sensor_.cadence_s).ns};
   const std::int64_t ns = exposure.ns + earlier.ns + grid_.environment_every.ns;
   const Tick beyond = knots(grid_.interpolation) - 2;  // on either side of the exposure

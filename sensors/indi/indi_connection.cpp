@@ -31,7 +31,7 @@ class IndiConnection : public Connection, public std::enable_shared_from_this<In
   void close() override { stream_.close(); }
 
   void read() {
-    if (ends_ || waiting_bytes_ > hub_.options.most_unanswered_bytes) return;
+    if (ends_ || waiting_bytes_ > hub_.options.max_unanswered_bytes) return;
     is_reading_ = true;
     if (interest_.has_asked())
       stream_.expires_never();
@@ -48,7 +48,7 @@ class IndiConnection : public Connection, public std::enable_shared_from_this<In
 
   void send(std::shared_ptr<const std::string> text) {
     if (ends_) return;
-    if (waiting_bytes_ > hub_.options.most_waiting_bytes) {
+    if (waiting_bytes_ > hub_.options.max_waiting_bytes) {
       ends_ = true;
       return close();
     }
@@ -67,7 +67,7 @@ class IndiConnection : public Connection, public std::enable_shared_from_this<In
   void hear(std::string_view bytes) {
     try {
       stream_text_.add(bytes);
-      while (waiting_bytes_ <= hub_.options.most_unanswered_bytes) {
+      while (waiting_bytes_ <= hub_.options.max_unanswered_bytes) {
         const auto element = stream_text_.next();
         if (!element) break;
         if (const auto request = parse_indi(*element)) answer(*request);

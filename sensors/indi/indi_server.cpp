@@ -16,7 +16,7 @@ struct IndiServer::Work {
                   .port = options.port,
                   .strangers_need = "INDI knows no passwords and is for this machine alone; "
                                     "others come by ssh -L",
-                  .most_connections = options.most_connections},
+                  .max_connections = options.max_connections},
                  connections) {}
   ~Work() { listener.stop(); }
 

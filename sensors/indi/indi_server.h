@@ -15,12 +15,12 @@ struct IndiServerOptions {
   unsigned short port = 0;  // 0: any free port
 
   // Limits.
-  std::size_t most_connections = 32;
-  double request_within_s = 10.0;               // the first of a connection
-  double progress_within_s = 30.0;              // of a client that is sent something
-  std::size_t most_waiting_bytes = 64 << 20;    // for one client, before more is added
-  std::size_t most_unanswered_bytes = 1 << 20;  // then its requests wait
-  double between_looks_s = 0.1;                 // at what has changed
+  std::size_t max_connections = 32;
+  double request_within_s = 10.0;              // the first of a connection
+  double progress_within_s = 30.0;             // of a client that is sent something
+  std::size_t max_waiting_bytes = 64 << 20;    // for one client, before more is added
+  std::size_t max_unanswered_bytes = 1 << 20;  // then its requests wait
+  double between_looks_s = 0.1;                // at what has changed
 };
 
 /// Serves the devices of an observatory by the INDI protocol, version 1.7, from one thread. INDI

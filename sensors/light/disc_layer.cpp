@@ -116,7 +116,7 @@ int rows_together(const View& view, const std::function<Vec<Gcrs>(SimTime)>& tow
   return int(std::clamp(still_px / std::max(px_per_row, 1e-9), 1.0, 1e6));
 }
 
-constexpr double least_large_px = 64.0;
+constexpr double min_large_px = 64.0;
 
 using SeenAt = std::function<SeenBody(const View&, SimTime)>;
 
@@ -136,7 +136,7 @@ Disc round_disc(const View& view, const SeenAt& seen, const std::vector<SimTime>
   disc.box_at = [&view, seen, reach_px](SimTime t) {
     return box_of(view, seen(view, t), t, reach_px);
   };
-  disc.is_large = radius_px > least_large_px && !view.scene().clouds;
+  disc.is_large = radius_px > min_large_px && !view.scene().clouds;
   return disc;
 }
 
@@ -249,7 +249,7 @@ void draw_earth(const View& view, OpticsStage& optics, ExpectedElectronImage& im
     disc.radius_px = disc.finest_px = std::asin(sine) / pixel_rad_near(view, -unit(here_m), middle);
     disc.changes_within_pixels = disc.finest_px < 4.0;
   }
-  disc.is_large = disc.finest_px > least_large_px;
+  disc.is_large = disc.finest_px > min_large_px;
   const double height_m = norm(here_m) - view.sensor().ellipsoid.equatorial_radius_m;
   disc.rows_together = rows_together(
       view, down, norm(view.observer(middle).velocity_m_per_s) / std::max(height_m, 1e3));
@@ -287,12 +287,12 @@ void add_disc_facts(const View& view, PlanFacts& f) {
   if (scene.moon_in_field)
     radiance = std::max(
         radiance, MoonRadiance(band, seen_moon(view, t).above_air_m, seen_sun(view, t).above_air_m)
-                      .most_photons_per_s_m2_sr());
+                      .max_photons_per_s_m2_sr());
   if (scene.earth_in_field)
     radiance = std::max(radiance,
                         EarthRadiance(band, view.observer(t).position_m, view.environment().sun_m,
                                       view.surface(), sensor.earth_albedo)
-                            .most_photons_per_s_m2_sr());
+                            .max_photons_per_s_m2_sr());
   if (!(radiance > 0.0)) return;
   const Optics& optics = sensor.camera.optics;
   f.disc_e = radiance * Throughput(view).electrons_per_photon_m2() * view.times().seconds() *

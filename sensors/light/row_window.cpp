@@ -7,7 +7,7 @@ namespace dmise {
 namespace {
 
 constexpr double found_within_s = 0.5e-9;
-constexpr int most_steps = 60;  // halving alone brings the longest delay, 1e5 s, to 1e-13 s
+constexpr int max_steps = 60;  // halving alone brings the longest delay, 1e5 s, to 1e-13 s
 
 /// Returns when an edge of the shutter, which is in the first row at `first`, meets the source [s
 /// later]: where the time less the delay of the source's row changes its sign. By false position,
@@ -19,7 +19,7 @@ double meeting_s(double last_delay_s, const DelayAt& delay_at_s) {
   if (below >= 0.0) return low;
   if (above <= 0.0) return high;
   int side = 0;
-  for (int k = 0; k < most_steps && high - low > found_within_s; ++k) {
+  for (int k = 0; k < max_steps && high - low > found_within_s; ++k) {
     const double at = k % 4 == 3
                           ? 0.5 * (low + high)
                           : std::clamp(low - below * (high - low) / (above - below), low, high);
@@ -67,10 +67,10 @@ class Chase {
   }
   /// The longest time that a fast one is in an open row.
   FrameTimes of_fast() const {
-    constexpr int steps = 512, most_halvings = 32;
+    constexpr int steps = 512, max_halvings = 32;
     const auto at = [&](int k) { return all_.at(double(k) / steps); };
     const auto edge = [&](SimTime shut, SimTime open) {
-      for (int k = 0; k < most_halvings; ++k) {
+      for (int k = 0; k < max_halvings; ++k) {
         const SimTime t{shut.ns + (open.ns - shut.ns) / 2};
         (is_exposed(t) ? open : shut) = t;
       }

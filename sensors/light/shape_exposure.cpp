@@ -28,13 +28,13 @@ double turn_of_glints(const View& view, const ObjectSampler& sampler, std::size_
 ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_t object,
                       const ObjectSample& middle, std::size_t k, std::size_t count) {
   const auto& exposure = view.times();
-  constexpr double most_halves = 256.0, golden = 0.6180339887498949;
+  constexpr double max_halves = 256.0, golden = 0.6180339887498949;
   const double begin = double(k) / double(count), end = double(k + 1) / double(count);
   const double turn = std::max(turn_rad(view, object, begin, end) / still_enough_rad,
                                turn_of_glints(view, sampler, object, begin, end));
   const double wanted = std::max(1.0, std::ceil(turn / 2));
-  const bool few = wanted > most_halves;
-  const int halves = 2 * int(std::min(wanted, most_halves));
+  const bool few = wanted > max_halves;
+  const int halves = 2 * int(std::min(wanted, max_halves));
   const auto within = [&](int i) {
     const double n = double(k) * halves + i;
     return few ? n * golden - std::floor(n * golden) : 0.5;
@@ -90,16 +90,16 @@ Arc joined(std::span<const Arc> arcs) {
 /// Short ways of even light are one arc.
 std::vector<Arc> simplified(std::vector<Arc> arcs) {
   constexpr double short_px = 8.0, even = 0.5;
-  double way_px = 0.0, least_e = arcs[0].signal_e, most_e = least_e;
+  double way_px = 0.0, min_e = arcs[0].signal_e, max_e = min_e;
   for (const Arc& arc : arcs) {
     way_px += length_px(arc);
-    least_e = std::min(least_e, arc.signal_e);
-    most_e = std::max(most_e, arc.signal_e);
+    min_e = std::min(min_e, arc.signal_e);
+    max_e = std::max(max_e, arc.signal_e);
   }
   constexpr double still_px = 1e-3;
   if (way_px < still_px)
     for (Arc& arc : arcs) arc.start = arc.end = arc.middle;
-  if (way_px < still_px || (way_px < short_px && least_e >= even * most_e)) return {joined(arcs)};
+  if (way_px < still_px || (way_px < short_px && min_e >= even * max_e)) return {joined(arcs)};
   return arcs;
 }
 
@@ -164,7 +164,7 @@ int poses_of(const View& view, const ObjectSampler& sampler, std::size_t object)
       sampler.shape(object)->radius_m / nearest_m / view.sensor().camera.optics.pixel_angle_rad();
   const double change = turn_rad(view, object) + angle_rad(start_m, end_m) +
                         std::abs(norm(start_m) - norm(end_m)) / nearest_m;
-  return int(std::clamp(std::ceil(2.0 * radius_px * change), 1.0, double(most_poses)));
+  return int(std::clamp(std::ceil(2.0 * radius_px * change), 1.0, double(max_poses)));
 }
 
 std::vector<ShapeSnapshot> snapshots_of(const View& view, const ObjectSampler& sampler,

@@ -21,9 +21,9 @@ std::vector<Arc> shape_arcs(const View& view, const ObjectSampler& sampler, std:
                             const std::vector<ObjectSample>& samples);
 
 /// Poses in which a resolved object is drawn over the exposure: so many that its outermost part
-/// jumps by half a pixel at most from one to the next, or `most_poses`.
+/// jumps by half a pixel at most from one to the next, or `max_poses`.
 int poses_of(const View& view, const ObjectSampler& sampler, std::size_t object);
-inline constexpr int most_poses = 64;
+inline constexpr int max_poses = 64;
 
 /// A resolved object in `poses` poses, each swept along its part of the path. `samples` as for
 /// `arcs_of`, of as many arcs as poses or more. The light is that of `shape_arcs`; each pose is

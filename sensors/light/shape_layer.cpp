@@ -12,7 +12,7 @@ namespace {
 
 constexpr int piece_px = 512;  // longest side of a tile
 constexpr std::size_t arcs_at_once = 1 << 16;
-constexpr int most_cover_steps = 1024;  // along one arc
+constexpr int max_cover_steps = 1024;  // along one arc
 
 /// Farthest that a sweep leads from its middle.
 double reach_px(const std::vector<Arc>& sweep) {
@@ -126,7 +126,7 @@ class ShapePainter {
     const double share = snapshot.share / double(snapshot.sweep.size());
     for (const Arc& way : snapshot.sweep) {
       const int steps =
-          int(std::clamp(std::ceil(2.0 * length_px(way)), 1.0, double(most_cover_steps)));
+          int(std::clamp(std::ceil(2.0 * length_px(way)), 1.0, double(max_cover_steps)));
       for (int i = 0; i < steps; ++i)
         mask_.cover(at + place(way, (i + 0.5) / steps), side_px, hidden_px * share / steps);
     }

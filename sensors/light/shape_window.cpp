@@ -11,7 +11,7 @@ namespace {
 
 constexpr double fine_side_px = 512;  // tiles below this are drawn finer than the camera's pixels
 constexpr double usual_fineness = 4;  // but no finer
-constexpr double least_side_px = 32;  // than makes a tile of this
+constexpr double min_side_px = 32;    // than makes a tile of this
 constexpr double widest_rad = 1.2;    // half angle of a tile about the object
 
 /// Axes about `direction` whose x is nearest to the camera's.
@@ -46,7 +46,7 @@ std::optional<PlanePart> seen_part(const Optics& optics,
                                    double margin_px) {
   constexpr int steps = 16;       // along each side
   constexpr double bulge = 0.02;  // of a curved side between two of them
-  constexpr double least_z = 0.05;
+  constexpr double min_z = 0.05;
   const double x0 = -0.5 - margin_px, y0 = -0.5 - margin_px;
   const double wide = optics.columns + 2 * margin_px, high = optics.rows + 2 * margin_px;
   PlanePart w{1e300, 1e300, -1e300, -1e300};
@@ -59,7 +59,7 @@ std::optional<PlanePart> seen_part(const Optics& optics,
       const auto direction = unproject(optics, rim);
       if (!direction) return std::nullopt;
       const Vec<TileAxes> d = tile_from_camera * *direction;
-      if (!(d.z > least_z)) return std::nullopt;
+      if (!(d.z > min_z)) return std::nullopt;
       w = {std::min(w.left, d.x / d.z), std::min(w.top, d.y / d.z), std::max(w.right, d.x / d.z),
            std::max(w.bottom, d.y / d.z)};
     }
@@ -71,7 +71,7 @@ std::optional<PlanePart> seen_part(const Optics& optics,
 /// Pixels of a tile for each of the camera's, along a side, for what is `side_px` of those wide.
 int fineness(double side_px) {
   const double fine = std::min(usual_fineness, fine_side_px / side_px);
-  return int(std::clamp(std::max(fine, std::ceil(least_side_px / side_px)), 1.0, 1024.0));
+  return int(std::clamp(std::max(fine, std::ceil(min_side_px / side_px)), 1.0, 1024.0));
 }
 
 double side_of(const TileCamera& camera) { return std::max({1, camera.columns, camera.rows}); }

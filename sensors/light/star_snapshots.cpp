@@ -6,8 +6,8 @@ namespace dmise {
 namespace {
 
 /// Snapshots are put on the plane together, as far as memory (6 MB) and single precision allow.
-constexpr std::size_t most_points = 65536;
-constexpr int most_snapshots = 64;
+constexpr std::size_t max_points = 65536;
+constexpr int max_snapshots = 64;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& 
         star_of.push_back(i);
       }
     }
-    if (points.size() + stars.size() > most_points || (k + 1) % most_snapshots == 0) put();
+    if (points.size() + stars.size() > max_points || (k + 1) % max_snapshots == 0) put();
   }
   put();
   return result;

@@ -194,10 +194,10 @@ double turn_rad(const View& view, std::size_t object, double begin, double end) 
     return *gcrs_from_body * body_from_panel(*panel, gcrs_from_body->inverse() * to_sun);
   };
   // Steps in which the body turns little; of a fast one the first, in proportion.
-  constexpr double step_rad = 0.1, most_steps = 1024;
+  constexpr double step_rad = 0.1, max_steps = 1024;
   const double wanted = std::max(1.0, std::ceil(turn / step_rad));
   const double step = (end - begin) / wanted;
-  const int steps = int(std::min(wanted, most_steps));
+  const int steps = int(std::min(wanted, max_steps));
   double of_panel = 0.0;
   auto before = gcrs_from_panel(begin);
   for (int i = 1; i <= steps; ++i) {

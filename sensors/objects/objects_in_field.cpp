@@ -37,7 +37,7 @@ constexpr double rough_margin_m = 1000.0;
 
 /// With a wider cone, or a camera that turns more during half the exposure, all objects are
 /// candidates.
-constexpr double widest_rough_cone_rad = 170.0 * deg, most_turning_rad = 0.1;
+constexpr double widest_rough_cone_rad = 170.0 * deg, max_turning_rad = 0.1;
 
 /// The camera's turning is taken from attitudes no farther apart than this.
 constexpr double longest_look_s = 10.0;
@@ -204,7 +204,7 @@ std::vector<std::uint32_t> FieldCone::candidates(RoughPlaces& rough) {
   std::vector<std::uint32_t> found;
   const double turning_rad = turn_rad_per_s_ * half_s_;
   const double half_rad = std::atan2(sin_, cos_) + std::asin(std::min(1.0, turning_rad));
-  if (half_rad > widest_rough_cone_rad || turning_rad > most_turning_rad) {
+  if (half_rad > widest_rough_cone_rad || turning_rad > max_turning_rad) {
     found.resize(rough.count);
     std::iota(found.begin(), found.end(), 0u);
     return found;

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_bytes = 2000;
+constexpr std::size_t max_bytes = 2000;
 
 ObjectPopulation only(const MeanElements& elements) {
   ObjectPopulation population;
@@ -26,7 +26,7 @@ MeanElements elements_in(const std::string& text) {
   const auto refuse = [](const std::string& reason) {
     throw DeviceError(DeviceFault::invalid_value, "the element set: " + reason);
   };
-  if (text.size() > most_bytes) refuse("is longer than 2000 bytes");
+  if (text.size() > max_bytes) refuse("is longer than 2000 bytes");
   try {
     const CatalogueFile file = parse_catalogue(text, "text");
     if (!file.refused.empty()) refuse(file.refused.front().reason);

@@ -56,7 +56,7 @@ double correlation_squared(double sigma_px, double length_px) {
 DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px, double star_px) {
   DetectionLimit limit{.streak_px = streak_px};
   limit.point_e = limiting_point_e(noise_e, sigma_px);
-  if (star_px >= detection_limits::least_difference_px) {
+  if (star_px >= detection_limits::min_difference_px) {
     // Beyond a few widths the correlation no longer changes: limit the length of the sum.
     const double unlike = 1.0 - correlation_squared(sigma_px, std::min(star_px, 100 * sigma_px));
     const double snr =
@@ -74,7 +74,7 @@ DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px
     return electrons_of(snr, width_px * length_px, noise_e) / length_px;
   };
   limit.streak_e_per_px = std::min(std::max(density / width_px, of_whole(point_limit_snr)),
-                                   of_whole(least_streak_snr(length_px)));
+                                   of_whole(min_streak_snr(length_px)));
   return limit;
 }
 
@@ -109,8 +109,8 @@ double noise_over_sky_e(const SensorConfig& sensor, const FrameTimes& times, std
 }
 
 double saturation_e(const Detector& acting) {
-  const double most_e = (std::exp2(acting.adc_bits) - 1 - acting.bias_dn) * acting.gain_e_per_dn;
-  return acting.well_is_limited ? std::min(most_e, acting.full_well_e) : most_e;
+  const double max_e = (std::exp2(acting.adc_bits) - 1 - acting.bias_dn) * acting.gain_e_per_dn;
+  return acting.well_is_limited ? std::min(max_e, acting.full_well_e) : max_e;
 }
 
 namespace {

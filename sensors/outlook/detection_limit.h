@@ -26,7 +26,7 @@ inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 /// in the pixels. A streak of density d has SNR d / noise
 /// everywhere along its length in the frame filtered for points; the maximum of the L / (2 sqrt(pi)
 /// sigma) independent positions is above the threshold in half of all frames, and the whole streak
-/// reaches the point's SNR. Or the whole streak reaches `least_streak_snr`, without such a
+/// reaches the point's SNR. Or the whole streak reaches `min_streak_snr`, without such a
 /// position.
 ///
 /// A point is distinguished from star trails of `star_px`, if they are long enough, by its shape:

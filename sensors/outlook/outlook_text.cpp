@@ -118,10 +118,10 @@ std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
 /// Where a body is beside a camera's limit, in one line.
 std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
   std::string text = std::string("exclusion: ") + of.body->name;
-  if (!of.least_rad)
+  if (!of.min_rad)
     return text + (o.on_ground ? " is below the horizon in " : " is behind the Earth in ") +
            frames_of(o.looked_for_exclusion, o);
-  const std::string nearest = formatted("%.1f deg at the nearest", *of.least_rad / deg);
+  const std::string nearest = formatted("%.1f deg at the nearest", *of.min_rad / deg);
   if (of.count == 0)
     return text + formatted(" is beyond %g deg in ", of.limit_deg) +
            frames_of(o.looked_for_exclusion, o) + ", " + nearest;
@@ -165,13 +165,13 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
     warn(std::string("the camera points ") +
          (o.on_ground ? "below the horizon " : "at the Earth ") + of_frames(m));
   const auto low = [&](const FrameOutlook& f) {
-    return f.limb_angle_rad && *f.limb_angle_rad < o.least_limb_angle_rad;
+    return f.limb_angle_rad && *f.limb_angle_rad < o.min_limb_angle_rad;
   };
   if (const auto n = count_if(o.frames, low)) {
     const Range limb = range_of(o.frames, &FrameOutlook::limb_angle_rad, deg);
     warn(formatted("the camera points to within %.1f deg of the Earth's limb, nearer than "
                    "--limb-deg %g, ",
-                   limb.least, o.least_limb_angle_rad / deg) +
+                   limb.least, o.min_limb_angle_rad / deg) +
          of_frames(n));
   }
   if (const auto n = count_if(o.frames, [](auto& f) { return f.sun_in_field; }))
@@ -187,9 +187,9 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   }
   const auto full = [](const FrameOutlook& f) { return f.background.electrons >= f.full_e; };
   if (const auto n = count_if(o.frames, full)) {
-    double most_e = 0.0;
-    for (const auto& f : o.frames) most_e = std::max(most_e, f.background.electrons);
-    warn(formatted("sky and dark current alone saturate the pixels (%.3g of %.3g e-) ", most_e,
+    double max_e = 0.0;
+    for (const auto& f : o.frames) max_e = std::max(max_e, f.background.electrons);
+    warn(formatted("sky and dark current alone saturate the pixels (%.3g of %.3g e-) ", max_e,
                    middle_of(o).full_e) +
          of_frames(n));
   }
@@ -315,7 +315,7 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     json.field("frames_excluded", std::int64_t(o.excluded_frames));
     for (const ExcludedFrames& of : o.excluded) {
       json.key(of.body->key).begin_object().field("limit_deg", of.limit_deg);
-      if (of.least_rad) json.field("least_deg", *of.least_rad / deg);
+      if (of.min_rad) json.field("least_deg", *of.min_rad / deg);
       json.field("frames", std::int64_t(of.count));
       if (of.count > 0) {
         json.field("first_frame", std::int64_t(of.first))

@@ -10,7 +10,7 @@ namespace dmise {
 std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig& sensor,
                                    const ObjectPopulation& population, const Clock& clock,
                                    const StarMap* stars, Threads& threads,
-                                   std::uint32_t most_frames) {
+                                   std::uint32_t max_frames) {
   std::vector<PlanSpan> spans;
   if (!sensor.accuracy.is_planned()) return spans;
   const bool wants_objects = sensor.effects.has(SpaceObjects::facts);
@@ -22,7 +22,7 @@ std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig&
                             models_of(scenario.objects));
   const ExposurePlanner planner(sensor, stars, scenario.faintest_star_mag, &shapes);
   const WorldSource worlds(scenario, sensor, clock, close_environments_s);
-  for (const std::uint32_t frame : evenly(frames_within(sensor, scenario.duration), most_frames)) {
+  for (const std::uint32_t frame : evenly(frames_within(sensor, scenario.duration), max_frames)) {
     const FrameTimes exposure = frame_times(sensor, frame);
     const World world = worlds.around(exposure, seen, source);
     const View view(sensor, exposure, world, scenario.seed);

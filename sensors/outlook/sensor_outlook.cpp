@@ -16,7 +16,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::uint32_t most_frames_with_states = 2000;  // for a platform or a target
+constexpr std::uint32_t max_frames_with_states = 2000;  // for a platform or a target
 
 /// The first examined frame at which an object needed by the sensor has no state.
 struct Loss {
@@ -27,7 +27,7 @@ std::optional<Loss> first_loss(const Scenario& scenario, const SensorConfig& sen
                                const ObjectPopulation& needed, const StateSource& source,
                                std::uint32_t frames) {
   if (needed.roster.objects.empty()) return std::nullopt;
-  for (const std::uint32_t frame : evenly(frames, most_frames_with_states)) {
+  for (const std::uint32_t frame : evenly(frames, max_frames_with_states)) {
     const ExposureSpan exposure = exposure_span(sensor, frame);
     for (const Tick tick : {exposure.start.ns / scenario.tick.ns,
                             (exposure.end.ns + scenario.tick.ns - 1) / scenario.tick.ns}) {
@@ -57,7 +57,7 @@ void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
   for (const ExcludingBody& body : excluding_bodies)
     if (const auto& limit_deg = limits.*body.limit_deg)
       out.excluded.push_back({.body = &body, .limit_deg = *limit_deg});
-  for (const std::uint32_t frame : evenly(frames, most_frames_with_states)) {
+  for (const std::uint32_t frame : evenly(frames, max_frames_with_states)) {
     const FrameTimes exposure = frame_times(sensor, frame);
     const World world = worlds.around(exposure, needed, source);
     const View view(sensor, exposure, world, scenario.seed);
@@ -67,7 +67,7 @@ void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
     out.excluded_frames += in_force.any();
     for (ExcludedFrames& of : out.excluded) {
       if (const auto& angle = angles.*of.body->angle_rad)
-        of.least_rad = std::min(of.least_rad.value_or(*angle), *angle);
+        of.min_rad = std::min(of.min_rad.value_or(*angle), *angle);
       if (!(in_force.*of.body->excluded)) continue;
       if (of.count++ == 0) {
         of.first = frame;
@@ -91,7 +91,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
                     .frames_in_run = frames_within(sensor, scenario.duration)};
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) out.target = target->object;
   out.cued = std::holds_alternative<PointCued>(sensor.pointing);
-  out.least_limb_angle_rad = options.least_limb_angle_rad;
+  out.min_limb_angle_rad = options.min_limb_angle_rad;
   const auto needed = only_these(population, needed_objects(sensor, population.roster));
   out.by_node = node_of(needed);
   if (!out.by_node.empty()) return out;
@@ -101,11 +101,11 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
 
   const WorldSource worlds(scenario, sensor, clock, close_environments_s);
-  if (options.most_frames > 0 && sensor.camera.exclusion.any()) {
+  if (options.max_frames > 0 && sensor.camera.exclusion.any()) {
     out.exclusion_action = sensor.camera.exclusion.action;
     look_for_exclusion(scenario, sensor, needed, source_of_needed, frames, worlds, out);
   }
-  std::uint32_t looks = options.most_frames;
+  std::uint32_t looks = options.max_frames;
   if (looks == 0) {
     out.objects_counted = false;
   } else if (frames > 0 && sensor.effects.has(SpaceObjects::facts) &&
@@ -113,10 +113,10 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
     const auto ticks = worlds.ticks_of(frame_times(sensor, 1));
     const std::size_t states =
         3 * std::size_t(ticks.last - ticks.first + 1) * population.roster.objects.size();
-    if (options.most_states / states < 2)
+    if (options.max_states / states < 2)
       out.objects_counted = false;
     else
-      looks = std::uint32_t(std::min<std::size_t>(looks, options.most_states / states));
+      looks = std::uint32_t(std::min<std::size_t>(looks, options.max_states / states));
   }
   const ObjectPopulation& seen = out.objects_counted ? population : needed;
   const StateSource source(seen, clock, threads);

@@ -17,7 +17,7 @@ struct ExcludedFrames {
   double limit_deg = 0.0;
   std::uint32_t count = 0, first = 0, last = 0;
   SimTime first_middle, last_middle;
-  std::optional<double> least_rad;  // over all frames looked at
+  std::optional<double> min_rad;  // over all frames looked at
 };
 
 /// Prediction of a sensor's frames from a few of them, without rendering.
@@ -28,7 +28,7 @@ struct SensorOutlook {
   std::string target;   // of the pointing; empty: none
   bool cued = false;    // examined as it is parked
   std::string by_node;  // of its platform or target, which a node moves or turns: not examined
-  double least_limb_angle_rad = 0.0;
+  double min_limb_angle_rad = 0.0;
   std::uint32_t frames_in_run = 0;
   ExclusionAction exclusion_action = ExclusionAction::flag;
   std::uint32_t looked_for_exclusion = 0;  // frames examined: all, or evenly spaced ones
@@ -41,12 +41,12 @@ struct SensorOutlook {
 };
 
 struct OutlookOptions {
-  std::uint32_t most_frames = 16;  // examined; 0: only the one in mid run
+  std::uint32_t max_frames = 16;  // examined; 0: only the one in mid run
   /// Number of object states computed for counting: beyond, fewer frames are examined, and if two
   /// are too many, objects are not counted.
-  std::size_t most_states = 4'000'000;
+  std::size_t max_states = 4'000'000;
   /// Frames of sensors in orbit whose boresight is nearer to the Earth's limb are warned of.
-  double least_limb_angle_rad = 0.0;
+  double min_limb_angle_rad = 0.0;
 };
 
 /// Examines frames of `sensor`, one of the scenario's. `stars` may be null. Throws `ConfigError`

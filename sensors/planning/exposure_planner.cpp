@@ -109,7 +109,7 @@ void add_blur_facts(const Optics& optics, double wavelength_m, PlanFacts& f) {
   }
   if (!f.scene.focus_drifts) return;
   f.kernels_change = true;
-  f.defocus_px = s.drift.most_m() / optics.f_number() / optics.pixel_pitch_m;
+  f.defocus_px = s.drift.max_m() / optics.f_number() / optics.pixel_pitch_m;
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ void ExposurePlanner::look_at_sensor() {
     constexpr double cell_s = 200e-9;
     const double cells = 4.0 * blur.half_cells * blur.half_cells;
     f.kernels_change = blur.screens > 0;
-    f.least_wavelengths = optics.spread.wavelengths;
+    f.min_wavelengths = optics.spread.wavelengths;
     f.kernel_end_px = double(blur.half_cells) / blur.oversampling;
     f.kernel_end_share = kernel_end_share(optics, band.centre_m, blur, f.kernel_end_px);
     f.kernel_s = cell_s * cells * std::max(1, blur.screens) * optics.spread.grid_columns *
@@ -176,7 +176,7 @@ void ExposurePlanner::look_at_sensor() {
         f.widest_pixel_rad = std::max(f.widest_pixel_rad, step_rad);
       }
     if (optics.vignetting.any())
-      f.least_illumination = std::min(f.least_illumination, relative_illumination(optics, at));
+      f.min_illumination = std::min(f.min_illumination, relative_illumination(optics, at));
   });
   f.illumination_slope_per_px = illumination_slope_per_px(optics);
 }
@@ -256,9 +256,9 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
     faintest_e = std::min(faintest_e, fainter * light_e / widening);
   }
   f.narrowest_object_px = narrowest_px;
-  const double air = light_of_magnitude(f.zenith_extinction_mag * f.most_airmass);
+  const double air = light_of_magnitude(f.zenith_extinction_mag * f.max_airmass);
   f.faint_objects = f.near_shadow || f.shapes > 0 || f.scene.clouds ||
-                    faintest_e * air < PlanFacts::least_snr_of_source * f.least_noise_e() /
+                    faintest_e * air < PlanFacts::min_snr_of_source * f.min_noise_e() /
                                            f.pattern_share(f.longest_trail_px);
 }
 

@@ -14,10 +14,10 @@
 #include "core/sky/scattered_moonlight.h"
 #include "core/sky/stars/star_counts.h"
 #include "sensors/light/disc_layer.h"
-#include "sensors/sky/sky_light.h"
-#include "sensors/sky/thermal_optics.h"
 #include "sensors/scene/limb_layer.h"
 #include "sensors/scene/throughput.h"
+#include "sensors/sky/sky_light.h"
+#include "sensors/sky/thermal_optics.h"
 
 namespace dmise {
 namespace {
@@ -213,13 +213,13 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   lowest_rad = std::max(0.0, lowest_rad - moves_rad(view));
   f.sees_horizon = f.sees_horizon || lowest_rad < near_horizon_rad;
   f.cloud_detail_px = cloud_detail_px(view, lowest_rad, f.pixel_rad);
-  f.most_airmass = airmass(lowest_rad);
+  f.max_airmass = airmass(lowest_rad);
   f.sees_zenith = angle_rad(view.boresight(middle), view.up(middle)) <
                   1.1 * half_diagonal_rad(optics) + moves_rad(view);
   f.zenith_extinction_mag = throughput.extinction_mag_per_airmass();
   if (const auto* gases = throughput.find<GasAbsorption>())
-    f.gas_mag = gases->sunlight_mag(f.most_airmass);
-  f.scintillation = scintillation_sigma(optics.aperture_m, view.times().seconds(), f.most_airmass,
+    f.gas_mag = gases->sunlight_mag(f.max_airmass);
+  f.scintillation = scintillation_sigma(optics.aperture_m, view.times().seconds(), f.max_airmass,
                                         view.site()->height_m);
   f.refraction_rad = view.refraction().at_apparent_rad(lowest_rad);
   f.dispersion_rad = dispersion_rad(sensor.camera.band, view.refraction(), lowest_rad);

@@ -60,12 +60,11 @@ class GlRenderer final : public Renderer {
 
  private:
   /// Whether what is visible from the camera is what is visible from afar: perspective moves an
-  /// edge in front of what it hides by less than `least_seen_px`.
+  /// edge in front of what it hides by less than `min_seen_px`.
   static bool views_are_parallel(const TileScene& scene) {
-    constexpr double least_seen_px = 0.02;
+    constexpr double min_seen_px = 0.02;
     const double ratio = radius_m(*scene.mesh) / norm(scene.object_m);
-    return ratio * parallel_from < 1.0 ||
-           2.0 * ratio * ratio * scene.camera.focal_px < least_seen_px;
+    return ratio * parallel_from < 1.0 || 2.0 * ratio * ratio * scene.camera.focal_px < min_seen_px;
   }
 
   static void check(const TileScene& scene) {

@@ -3,7 +3,7 @@
 namespace dmise {
 
 // The models of core/materials/brdf.h with source-dependent factors precomputed: a facet's radiance
-// is diffuse g(out) + specular lobe / max(cos_out, least_cos_out) + emitted.
+// is diffuse g(out) + specular lobe / max(cos_out, min_cos_out) + emitted.
 
 // With `TEXTURED`, a material's pictures are applied: colours as a factor of the diffuse part,
 // weighted by band, heights by tilting the normal against their gradient.

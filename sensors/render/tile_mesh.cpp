@@ -266,7 +266,7 @@ class Builder {
     const double root = look.specular.w * cos2 + (1.0 - cos2);
     const double mirror =
         std::clamp(2.0 * glm::dot(n, source) * c - glm::dot(view, source), 0.0, 1.0);
-    const double lobe = look.emitted.w < 0.0f ? 1.0 / (root * root * std::max(c, least_cos_out))
+    const double lobe = look.emitted.w < 0.0f ? 1.0 / (root * root * std::max(c, min_cos_out))
                         : mirror > 0.0        ? std::pow(mirror, double(look.emitted.w))
                                               : 0.0;
     const double falloff = c * c / (c * c + look.diffuse.w * (1.0 - c * c));

@@ -15,7 +15,7 @@ namespace dmise {
 namespace {
 
 constexpr double step_rad = 2.0 * deg;  // that the axis turns between two times
-constexpr int fewest_steps = 4, most_steps = 4096;
+constexpr int fewest_steps = 4, max_steps = 4096;
 constexpr double found_within = 1e-5;  // of two steps
 
 /// Whether no part of a disc is seen past the Earth.
@@ -49,9 +49,9 @@ Looks looks_of(const View& view) {
   for (const SimTime t : {all.start, all.at(0.5), all.end - moment})
     fastest_rad = std::max(fastest_rad, angle_rad(view.boresight(t), view.boresight(t + moment)));
   const double steps = fastest_rad / moment.seconds() * all.seconds() / step_rad;
-  Looks looks{.times = {}, .reach = {}, .many_turns = steps > most_steps};
+  Looks looks{.times = {}, .reach = {}, .many_turns = steps > max_steps};
   const int count =
-      std::clamp(int(std::min(steps, double(most_steps))) + 1, fewest_steps, most_steps);
+      std::clamp(int(std::min(steps, double(max_steps))) + 1, fewest_steps, max_steps);
   looks.reach = {(all.end - all.start).ns /
                  std::int64_t(std::max(1.0, std::max(steps, double(count))))};
   const double golden = 0.6180339887498949;

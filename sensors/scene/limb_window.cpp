@@ -164,9 +164,9 @@ void LimbWindow::add_pixels(const std::vector<Row>& rows, float share, const Dis
   }
 }
 
-double LimbWindow::sampled(const Row& row, double x_px, double y_px, double least_places) const {
+double LimbWindow::sampled(const Row& row, double x_px, double y_px, double min_places) const {
   const auto* lattice = lattices.begin();
-  while (lattice + 1 != lattices.end() && lattice->places < least_places) ++lattice;
+  while (lattice + 1 != lattices.end() && lattice->places < min_places) ++lattice;
   double sum = 0.0;
   for (int k = 0; k < lattice->places; ++k) {
     const double across = (k + 0.5) / lattice->places;

@@ -43,7 +43,7 @@ class LimbWindow {
   void add(SimTime t, float share);
   Look look(const Row& row, double x_px, double y_px) const;
   void add_tile(const std::vector<Row>& rows, float share, const DiscBox& tile);
-  double sampled(const Row& row, double x_px, double y_px, double least_places) const;
+  double sampled(const Row& row, double x_px, double y_px, double min_places) const;
   void add_pixels(const std::vector<Row>& rows, float share, const DiscBox& tile);
   const Row& of(const std::vector<Row>& rows, int y) const {
     return rows[rows.size() == 1 ? 0 : std::size_t(y)];

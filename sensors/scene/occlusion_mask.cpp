@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-constexpr int most_arc_steps = 4096;  // along one arc
+constexpr int max_arc_steps = 4096;  // along one arc
 
 /// Part of a pixel's width that lies within `half` of `at`.
 double overlap(int pixel, double at, double half) {
@@ -33,7 +33,7 @@ std::vector<Arc> OcclusionMask::past(std::span<const Arc> path) const {
       free.push_back(arc);
       continue;
     }
-    const int steps = int(std::clamp(std::ceil(2.0 * length_px(arc)), 1.0, double(most_arc_steps)));
+    const int steps = int(std::clamp(std::ceil(2.0 * length_px(arc)), 1.0, double(max_arc_steps)));
     const auto share_of = [&](int i) { return free_at(place(arc, (i + 0.5) / steps)); };
     for (int first = 0, next; first < steps; first = next) {
       const double share = share_of(first);

@@ -69,8 +69,8 @@ std::vector<Planet> planets_in_field(const View& view, std::span<const SimTime> 
 }
 
 bool is_drawn_as_disc(const View& view, const SeenPlanet& planet) {
-  constexpr double least_radius_px = 0.5;
-  return planet.radius_rad >= least_radius_px * view.sensor().camera.optics.pixel_angle_rad();
+  constexpr double min_radius_px = 0.5;
+  return planet.radius_rad >= min_radius_px * view.sensor().camera.optics.pixel_angle_rad();
 }
 
 }  // namespace dmise

@@ -170,9 +170,9 @@ namespace {
 /// Angular speed of the interpolated attitude, by a difference over less than 0.1 rad.
 double rate_rad_per_s(double u, double tick_s, const AttitudeState& start,
                       const AttitudeState& end) {
-  const double most_rad =  // of a tick
+  const double max_rad =  // of a tick
       20.0 + tick_s * (3.0 * norm(start.rate_rad_per_s) + norm(end.rate_rad_per_s));
-  const double du = 0.05 / most_rad;
+  const double du = 0.05 / max_rad;
   const auto at = [&](double part) {
     return rotation_of<Gcrs, Body>(interpolate_attitude(part, tick_s, start, end));
   };

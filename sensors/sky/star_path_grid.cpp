@@ -11,7 +11,7 @@ namespace {
 
 constexpr double widest_margin_px = 512.0;  // paths that are longer take no grid
 constexpr double coarsest_px = 64.0, finest_px = 16.0;
-constexpr double most_bad = 0.05;  // share of patches, before the grid is made finer
+constexpr double max_bad = 0.05;  // share of patches, before the grid is made finer
 constexpr double direction_tolerance = 1e-7, relative_tolerance = 1e-4;
 
 }  // namespace
@@ -33,7 +33,7 @@ StarPathGrid::StarPathGrid(const View& view, const Exact& exact)
   if (margin_px > widest_margin_px) return;
   for (double spacing_px = coarsest_px; spacing_px >= finest_px; spacing_px *= 0.5) {
     make(spacing_px, margin_px, exact);
-    if (bad_share() <= most_bad) return;
+    if (bad_share() <= max_bad) return;
   }
 }
 

@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 /// Gains below this share of the value are rounding.
-constexpr double least_gain = 1e-12;
+constexpr double min_gain = 1e-12;
 
 /// A set of sites with what it misses.
 class Network {
@@ -69,7 +69,7 @@ double bound_over(const SiteMisses& misses, const Network& network,
 /// Replaces one site by the candidate that adds most, if that helps. Returns whether it did.
 bool move_one(const SiteMisses& misses, SiteChoice& choice) {
   std::size_t from = choice.sites.size(), to = 0;
-  double best = choice.best + least_gain * choice.best;
+  double best = choice.best + min_gain * choice.best;
   for (std::size_t k = 0; k < choice.sites.size(); ++k) {
     std::vector<std::size_t> others = choice.sites;
     others.erase(others.begin() + std::ptrdiff_t(k));
@@ -124,8 +124,8 @@ SiteChoice choose_sites(const SiteMisses& misses, std::size_t count) {
     choice.bound = std::min(choice.bound, bound_over(misses, network, choice.sites, count));
   }
   choice.greedy = choice.best = choice.detected.back();
-  constexpr int most_moves = 1000;
-  while (choice.moves < most_moves && move_one(misses, choice)) ++choice.moves;
+  constexpr int max_moves = 1000;
+  while (choice.moves < max_moves && move_one(misses, choice)) ++choice.moves;
   if (choice.moves > 0)
     choice.bound = std::min(
         choice.bound, bound_over(misses, network_of(misses, choice.sites), choice.sites, count));

@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_probability = 1.0 - 1e-9;
+constexpr double max_probability = 1.0 - 1e-9;
 
 struct DetectionCurve {
   double half = 1.0, spread = 1.0;
@@ -78,7 +78,7 @@ double share_of(const DetectionModel& model, const ExpectedTrail& trail) {
 
 // Standard deviations of the prior about the start: of ln half, ln spread and the share.
 constexpr double prior_half = 0.5, prior_spread = 0.5, prior_share = 0.05;
-constexpr double least_spread = 0.02, most_spread = 2.0, least_share = 0.5;
+constexpr double min_spread = 0.02, max_spread = 2.0, min_share = 0.5;
 
 /// Minus the logarithm of the posterior.
 double badness(const DetectionModel& model, const DetectionModel& start,
@@ -120,8 +120,8 @@ double shape_difference_px(const ExpectedTrail& trail) {
   // What is almost a point is compared with a star as one.
   constexpr double as_point_px = 0.8, falls_by = 2.0;
   const double as_point = star - falls_by * std::max(0.0, length - as_point_px);
-  constexpr double least_px = detection_limits::least_difference_px, steepness = 4.0;
-  const double allowed_px = least_px + steepness * (std::max(trail.unlike_px, as_point) - least_px);
+  constexpr double min_px = detection_limits::min_difference_px, steepness = 4.0;
+  const double allowed_px = min_px + steepness * (std::max(trail.unlike_px, as_point) - min_px);
   return std::max(0.0, std::min(moments_px, allowed_px));
 }
 
@@ -130,7 +130,7 @@ double detection_probability(const DetectionModel& model, const ExpectedTrail& t
   double sigmas = curve_of(model, trail).sigmas(trail.snr);
   if (!trail.star_known && !model.shape.empty())
     sigmas = std::min(sigmas, curve_at(model.shape, shape_difference_px(trail)).sigmas(trail.snr));
-  return std::min(most_probability, share_of(model, trail) * theory_of_detection(sigmas, 0.0));
+  return std::min(max_probability, share_of(model, trail) * theory_of_detection(sigmas, 0.0));
 }
 
 DetectionModel fitted_detection_model(const DetectionModel& start,
@@ -148,13 +148,13 @@ DetectionModel fitted_detection_model(const DetectionModel& start,
           node.half_snr = std::exp(log_half);
           return badness(model, start, telling);
         }));
-        node.spread = least_of(least_spread, most_spread, [&](double spread) {
+        node.spread = least_of(min_spread, max_spread, [&](double spread) {
           node.spread = spread;
           return badness(model, start, telling);
         });
       }
     for (double* share : model.shares())
-      *share = least_of(least_share, 1.0, [&](double value) {
+      *share = least_of(min_share, 1.0, [&](double value) {
         *share = value;
         return badness(model, start, telling);
       });

@@ -64,14 +64,14 @@ const DetectionModel& measured_detection_model();
 /// How far the shape of a trail is from that of a star's: the length of the trail whose second
 /// moments are the difference of both (a point's is the star's length), but at most what
 /// 1.5 px + 4 (difference of the trails - 1.5 px) gives, as the chain takes what differs by less
-/// than `least_difference_px` for a star. >= 0.
+/// than `min_difference_px` for a star. >= 0.
 double shape_difference_px(const ExpectedTrail& trail);
 
 /// Returns a probability in [0, 1) for any SNR >= 0 and lengths >= 0.
 double detection_probability(const DetectionModel& model, const ExpectedTrail& trail);
 
 /// Less is taken for 0.
-inline constexpr double least_probability = 1e-6;
+inline constexpr double min_probability = 1e-6;
 
 /// A source of a rendered frame.
 struct DetectionSample {

@@ -123,7 +123,7 @@ std::optional<ExposureForecast> SensorForecast::of(const FrameTimes& commanded,
            std::pow(10.0, 0.4 * (zero_point_mag - dimmed_mag - complete_to_v_mag_));
   };
   // No pixel has less noise: what is too faint with it needs no sky.
-  const double least_noise_e = noise_.noise_e(0.0);
+  const double min_noise_e = noise_.noise_e(0.0);
 
   std::vector<ObjectSample> samples;
   for (const std::uint32_t object : objects) {
@@ -160,9 +160,9 @@ std::optional<ExposureForecast> SensorForecast::of(const FrameTimes& commanded,
     ExpectedDetection look = look_at(trail);
     const double blur_px = blur_.sigma_px(norm(line));
     const double sigma_px = std::sqrt(std::max(0.0, blur_px * blur_px - 1.0 / 12));  // no pixel
-    look.snr = matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px});
-    const bool telling = look.snr >= detection_limits::least_snr ||
-                         detection_probability(scene_.model(), look.trail()) >= least_probability;
+    look.snr = matched_filter_snr({trail.signal_e, trail.length_px, min_noise_e, sigma_px});
+    const bool telling = look.snr >= detection_limits::min_snr ||
+                         detection_probability(scene_.model(), look.trail()) >= min_probability;
     if (least < abrupt_ratio * most && telling) {
       samples.clear();
       for (std::size_t k = 0; k < many_samples; ++k)

@@ -130,13 +130,13 @@ TEST_P(FrameErrorsOfABlur, RoundingOfATransformIsNoError) {
   const auto& sources = reference_.planes.sources;
   const double brightest_e = *std::max_element(sources.pixels.begin(), sources.pixels.end());
   ASSERT_GT(brightest_e, 1e3);
-  const double least_e = 0x1p-22 * brightest_e,
+  const double min_e = 0x1p-22 * brightest_e,
                noise_e = std::sqrt(double(reference_.planes.background.at(8, 32)) + 25.0);
   const bool transformed = std::string(GetParam()) == "transform";
-  EXPECT_NEAR(with_more_at_star_row(least_e).largest.background_sigma,
-              transformed ? 0.0 : least_e / noise_e, 0.2 * least_e / noise_e);
+  EXPECT_NEAR(with_more_at_star_row(min_e).largest.background_sigma,
+              transformed ? 0.0 : min_e / noise_e, 0.2 * min_e / noise_e);
   EXPECT_NEAR(with_more_at_star_row(1.0).largest.background_sigma, 1.0 / noise_e,
-              (transformed ? 4.0 : 0.2) * least_e / noise_e);
+              (transformed ? 4.0 : 0.2) * min_e / noise_e);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, FrameErrorsOfABlur, testing::Values("transform", "direct"),

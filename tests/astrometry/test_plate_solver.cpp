@@ -203,7 +203,7 @@ StatedErrors stated_errors(const PlateSky& sky, double corner_px, std::size_t st
     const SeenPlate p = distorted_plate(sky, corner_px, stars, within, seed);
     if (p.sources.size() < stars) continue;
     const PlateSolution s = solve(p, sky);
-    double most_sigmas = 0.0;
+    double max_sigmas = 0.0;
     for (int j = 0; j <= 4; ++j)
       for (int i = 0; i <= 4; ++i) {
         const PixelPosition at{i * 1999 / 4.0, j * 1499 / 4.0};
@@ -214,10 +214,10 @@ StatedErrors stated_errors(const PlateSky& sky, double corner_px, std::size_t st
         all.error2 += error_px * error_px / 2;
         all.sigma2 += sigma * sigma;
         ++all.places;
-        most_sigmas = std::max(most_sigmas, error_px / sigma);
+        max_sigmas = std::max(max_sigmas, error_px / sigma);
       }
     ++all.plates;
-    all.beyond += most_sigmas > 4.3;
+    all.beyond += max_sigmas > 4.3;
   }
   std::printf(
       "%zu stars within %.1f, %+.0f px in the corners: error %.3f px, stated %.3f, %d of %d "

@@ -24,15 +24,15 @@ Costs costs_of(const std::vector<Pairing>& pairs) {
 }
 
 /// The least sum over all choices, one after the other.
-double least_cost(const Costs& costs, std::size_t row, std::size_t rows, std::size_t columns,
-                  unsigned used) {
+double min_cost(const Costs& costs, std::size_t row, std::size_t rows, std::size_t columns,
+                unsigned used) {
   if (row == rows) return 0;
-  double best = least_cost(costs, row + 1, rows, columns, used);
+  double best = min_cost(costs, row + 1, rows, columns, used);
   for (std::size_t column = 0; column < columns; ++column)
     if (const auto found = costs.find({row, column});
         found != costs.end() && !(used & 1u << column))
-      best = std::min(
-          best, found->second + least_cost(costs, row + 1, rows, columns, used | 1u << column));
+      best = std::min(best,
+                      found->second + min_cost(costs, row + 1, rows, columns, used | 1u << column));
   return best;
 }
 
@@ -61,7 +61,7 @@ TEST(Assignment, IsTheCheapestOfAll) {
       for (std::size_t j = 0; j < i; ++j)
         ASSERT_TRUE(found[i] == unassigned || found[i] != found[j]);
     const Costs costs = costs_of(pairs);
-    ASSERT_NEAR(cost_of(found, costs), least_cost(costs, 0, rows, columns, 0), 1e-9);
+    ASSERT_NEAR(cost_of(found, costs), min_cost(costs, 0, rows, columns, 0), 1e-9);
     std::shuffle(pairs.begin(), pairs.end(), random);
     ASSERT_EQ(assign(rows, columns, pairs), found);
   }

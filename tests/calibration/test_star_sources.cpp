@@ -20,13 +20,13 @@ StarSourceSettings settings_of(const FrameHeader& h) {
 }
 
 /// Stars on a loose grid, at random places within their cells.
-std::vector<Truth> add_grid(simulated::SimulatedFrame& frame, int columns, int rows, double least_e,
-                            double most_e, bool trails) {
+std::vector<Truth> add_grid(simulated::SimulatedFrame& frame, int columns, int rows, double min_e,
+                            double max_e, bool trails) {
   std::vector<Truth> stars;
   for (int y = 30; y < rows - 30; y += 40)
     for (int x = 30; x < columns - 30; x += 40) {
       const Truth t{x + frame.uniform(-5, 5), y + frame.uniform(-5, 5),
-                    least_e * std::pow(most_e / least_e, frame.uniform(0, 1))};
+                    min_e * std::pow(max_e / min_e, frame.uniform(0, 1))};
       if (trails)
         frame.add_streak(t.x, t.y, 6, 0.6, t.flux_e);
       else

@@ -39,11 +39,11 @@ TEST(BreakupConfig, KeysAndDefaults) {
   const Breakup& b = plain.breakup.value();
   EXPECT_EQ(plain.named, "breakup");
   EXPECT_EQ(plain.sphere.albedo, 0.175);
-  EXPECT_EQ(b.event, (BreakupEvent{.mass_kg = 900, .least_length_m = 0.1}));
+  EXPECT_EQ(b.event, (BreakupEvent{.mass_kg = 900, .min_length_m = 0.1}));
   EXPECT_EQ(b.epoch, (Utc{2458139.5, 0.0}));
   EXPECT_FALSE(b.seed);
   EXPECT_NEAR(norm(b.parent.position_m), 7178137, 1e-3);
-  EXPECT_EQ(b.most_fragments(), 238);
+  EXPECT_EQ(b.fragment_count(), 238);
   const ObjectSource other =
       source_of(crash +
                     ", structure: upper_stage, least_length_m: 0.05, seed: 9, "
@@ -54,7 +54,7 @@ TEST(BreakupConfig, KeysAndDefaults) {
                                                 .mass_kg = 900,
                                                 .projectile_mass_kg = 556,
                                                 .relative_speed_m_per_s = 11700,
-                                                .least_length_m = 0.05}));
+                                                .min_length_m = 0.05}));
   EXPECT_EQ(other.breakup->seed, 9u);
   EXPECT_EQ(other.breakup->name, "iridium");
   EXPECT_EQ(other.breakup->epoch, (Utc{2458138.5, 0.5}));

@@ -112,13 +112,13 @@ TEST(CuedPointing, ReadsItsKeys) {
   EXPECT_EQ(cued.cue.slew_deg_per_s, 3);
   EXPECT_EQ(cued.cue.slew_deg_per_s2, 1.5);
   EXPECT_EQ(cued.cue.settle_s, 4);
-  EXPECT_EQ(cued.cue.least_elevation_deg, 25);
+  EXPECT_EQ(cued.cue.min_elevation_deg, 25);
   EXPECT_EQ(cued.cue.sun_exclusion_deg, 40);
   EXPECT_EQ(cued.cue.moon_exclusion_deg, 10);
   EXPECT_EQ(cued.cue.exposures, 5);
   EXPECT_EQ(cued.cue.sigma_arcsec, 2);
   EXPECT_EQ(cued.cue.limiting_magnitude, 12.5);
-  EXPECT_EQ(cued.cue.least_gain_nats, 0.5);
+  EXPECT_EQ(cued.cue.min_gain_nats, 0.5);
   EXPECT_EQ(scenario.fusion->cue_delay_ticks, 3);
   EXPECT_EQ(scenario.sensors[0].tracking, Tracking::sidereal);
   EXPECT_EQ(scenario_of(scenario_text("{cued: on}")).sensors[0].tracking, Tracking::target);

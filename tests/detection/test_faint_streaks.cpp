@@ -28,7 +28,7 @@ double flux_of_snr(const FrameHeader& h, double length, double snr) {
 
 struct Found {
   int found = 0, placed = 0, false_alarms = 0;
-  double least_snr = 1e9;  // that is published
+  double min_snr = 1e9;  // that is published
 };
 
 /// Streaks on a grid of a frame, and what the detector makes of them.
@@ -49,7 +49,7 @@ Found found_of(double length, double snr, int frames, int stars, double sagitta 
       streaks.push_back({x, y, angle});
     }
     const auto result = detect(frame.expose(), header, {}, threads);
-    for (const Detection& d : result.detections) out.least_snr = std::min(out.least_snr, d.snr);
+    for (const Detection& d : result.detections) out.min_snr = std::min(out.min_snr, d.snr);
     std::vector<bool> used(result.detections.size());
     for (const auto& [x, y, angle] : streaks) {
       bool found = false;
@@ -94,7 +94,7 @@ TEST(FaintStreaks, AreNotPublishedBelowTheThreshold) {
   for (const double length : {30.0, 100.0, 300.0})
     for (const double snr : {7.5, 8.5}) {
       const Found found = found_of(length, snr, 3, 0);
-      EXPECT_GE(found.least_snr, 4.0) << length << ", " << snr;
+      EXPECT_GE(found.min_snr, 4.0) << length << ", " << snr;
       EXPECT_GT(found.found, 0) << length << ", " << snr;
     }
 }

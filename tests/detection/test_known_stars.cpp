@@ -76,9 +76,9 @@ TEST_F(KnownStars, AreExpectedByTheirPlaceAndMagnitude) {
   EXPECT_EQ(sky_.complete_to_v_mag(), 8.0);
   double brightest = 0.0;
   for (const ExpectedStar& star : stars) brightest = std::max(brightest, star.signal_e);
-  double least_v = 99.0;
-  for (const float v : map_->stars.v_mag) least_v = std::min(least_v, double(v));
-  EXPECT_NEAR(brightest, exposure_s * std::pow(10.0, 0.4 * (header_.zero_point_mag - least_v)),
+  double min_v = 99.0;
+  for (const float v : map_->stars.v_mag) min_v = std::min(min_v, double(v));
+  EXPECT_NEAR(brightest, exposure_s * std::pow(10.0, 0.4 * (header_.zero_point_mag - min_v)),
               1e-3 * brightest);
   EXPECT_TRUE(sky_.stars_in(header_, columns, rows, 2 * brightest).empty());
 }

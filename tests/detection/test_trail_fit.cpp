@@ -34,7 +34,7 @@ std::vector<FitPixel> field(const std::vector<Trail>& trails, int size, std::mt1
 FitSettings settings() {
   FitSettings s;
   s.psf = sigma_px;
-  s.most_steps = 40;
+  s.max_steps = 40;
   return s;
 }
 

@@ -168,7 +168,7 @@ TEST(PsfWavelengths, ANarrowBandHasNoneToSmearAndACameraMayAskForMore) {
   const double wide = PsfWavelengths::error(2, f).background_sigma;
   f.relative_bandwidth = 0.02;
   EXPECT_LT(PsfWavelengths::error(2, f).background_sigma, 0.2 * wide);
-  f.least_wavelengths = 9;
+  f.min_wavelengths = 9;
   EXPECT_EQ(PsfWavelengths::error(0, f), ErrorBound{});
   EXPECT_EQ(PsfWavelengths::cost_s(0, f), PsfWavelengths::cost_s(4, f));
 }

@@ -190,7 +190,7 @@ TEST(Scheduler, LeavesAloneWhatTheSensorMayNotLookAt) {
   CuedSensor low = telescope(), far_from_sun = telescope(), far_from_moon = telescope(),
              slow = telescope();
   EXPECT_FALSE(none(telescope(), target(1, 90, 50)));
-  low.cue.least_elevation_deg = 65;
+  low.cue.min_elevation_deg = 65;
   EXPECT_TRUE(none(low, target(1, 90, 50)));
   far_from_sun.cue.sun_exclusion_deg = 180;
   EXPECT_TRUE(none(far_from_sun, target(1, 90, 50)));
@@ -275,7 +275,7 @@ TEST(Scheduler, GivesWhatIsWishedWhateverElseWouldTellMore) {
 
 TEST(Scheduler, AWishMaySayHowManyExposuresAndNeedsNoGain) {
   CuedSensor sensor = telescope();
-  sensor.cue.least_gain_nats = 1e3;
+  sensor.cue.min_gain_nats = 1e3;
   const CueTarget targets[] = {target(1, 90, 50)};
   Scheduler scheduler = scheduler_of({sensor});
   EXPECT_TRUE(tasks_of(scheduler, targets).empty());
@@ -302,7 +302,7 @@ TEST(Scheduler, AWishThatCannotBeSaysWhy) {
   };
   CuedSensor high = telescope(), low = telescope(), sunless = telescope(), moonless = telescope(),
              slow = telescope();
-  high.cue.least_elevation_deg = 65;
+  high.cue.min_elevation_deg = 65;
   low.cue.greatest_elevation_deg = 30;
   sunless.cue.sun_exclusion_deg = moonless.cue.moon_exclusion_deg = 180;
   slow.cue.slew_deg_per_s = 0.1;

@@ -34,7 +34,7 @@ struct Site {
     latest.set(MessageSlot::status, {"{}"});
     history.add({1.0, {latest.of(MessageSlot::status)}});
   }
-  static WebServerOptions options() { return {.may_control = true, .most_commands_per_s = 1000}; }
+  static WebServerOptions options() { return {.may_control = true, .max_commands_per_s = 1000}; }
 
   StaticFiles files;
   LatestMessages latest;

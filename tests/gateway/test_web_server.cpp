@@ -316,7 +316,7 @@ TEST(WebServer, ThePastIsShownUntilTheViewerGoesBackToTheRun) {
 }
 
 TEST(WebServer, SilentConnectionsLockNobodyOut) {
-  Site site({.tokens = {viewer, operator_, referee}, .may_control = true, .most_connections = 8});
+  Site site({.tokens = {viewer, operator_, referee}, .may_control = true, .max_connections = 8});
   Watcher watcher(site, "/live?token=" + viewer);
   watcher.read();
   boost::asio::io_context io;
@@ -335,7 +335,7 @@ TEST(WebServer, SilentConnectionsLockNobodyOut) {
 
 TEST(WebServer, ASlowLineGetsTheWholeFile) {
   constexpr double request_within_s = 2.0;
-  Site site({.most_connections = 1, .request_within_s = request_within_s});
+  Site site({.max_connections = 1, .request_within_s = request_within_s});
   boost::asio::io_context io;
   tcp::socket slow = connected(io, site);
   boost::asio::write(slow, boost::asio::buffer(ask_for_large));
@@ -393,7 +393,7 @@ TEST(WebServer, ATokenInTheAddressOfAFrameKeepsItsPath) {
 }
 
 TEST(WebServer, BoundsConnectionsAndMessages) {
-  Site site({.most_connections = 3, .request_within_s = 0.3});
+  Site site({.max_connections = 3, .request_within_s = 0.3});
   std::vector<std::unique_ptr<Watcher>> watchers;
   for (int i = 0; i < 3; ++i) watchers.push_back(std::make_unique<Watcher>(site));
   EXPECT_THROW(Watcher{site}, boost::system::system_error);

@@ -89,7 +89,7 @@ TEST(IndiServer, EndsConnectionsOfHostileBytesAlone) {
 
 TEST(IndiServer, LosesClientsThatDoNotRead) {
   const Door door("indi-slow",
-                  {.most_waiting_bytes = 10'000'000, .most_unanswered_bytes = 20'000'000});
+                  {.max_waiting_bytes = 10'000'000, .max_unanswered_bytes = 20'000'000});
   Client slow(door), good(door);
   slow.say(connect);
   std::string many;
@@ -101,7 +101,7 @@ TEST(IndiServer, LosesClientsThatDoNotRead) {
 }
 
 TEST(IndiServer, LetsClientsWaitThatAskFasterThanTheyRead) {
-  const Door door("indi-fast", {.most_waiting_bytes = 2'000'000, .most_unanswered_bytes = 100'000});
+  const Door door("indi-fast", {.max_waiting_bytes = 2'000'000, .max_unanswered_bytes = 100'000});
   Client fast(door);
   std::string many;
   for (int i = 0; i < 500; ++i) many += get_all;

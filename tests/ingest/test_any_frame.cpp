@@ -385,7 +385,7 @@ double seconds_of_search(const ForeignImage& image) {
 }
 
 /// Most that a small frame may cost, in searches of a megapixel of noise.
-constexpr double most_searches = 5.0;
+constexpr double max_searches = 5.0;
 
 double seconds_of_a_megapixel() {
   std::mt19937_64 random(1);
@@ -399,23 +399,23 @@ double seconds_of_a_megapixel() {
 }
 
 TEST(AnyFrame, SmallFramesOfAnyKindAreSearchedInAMoment) {
-  const double most_s = most_searches * seconds_of_a_megapixel();
+  const double max_s = max_searches * seconds_of_a_megapixel();
   double worst_s = 0.0;
   std::mt19937_64 random(2);
   for (int i = 0; i < 200; ++i) {
     const ForeignImage image = small_frame(random);
     const double spent_s = seconds_of_search(image);
-    EXPECT_LT(spent_s, most_s) << i << ": " << image.shape[0] << " x " << image.shape[1];
+    EXPECT_LT(spent_s, max_s) << i << ": " << image.shape[0] << " x " << image.shape[1];
     worst_s = std::max(worst_s, spent_s);
   }
-  RecordProperty("worst_share", std::to_string(worst_s / most_s));
+  RecordProperty("worst_share", std::to_string(worst_s / max_s));
 }
 
 // Without a bound on fitted lengths this frame of 35 x 58 px took 3.4 s.
 TEST(AnyFrame, CrossedLinesAreSearchedInAMoment) {
   std::mt19937_64 random(21);
   for (int i = 0; i < 154; ++i) crossed_lines(random);
-  EXPECT_LT(seconds_of_search(crossed_lines(random)), most_searches * seconds_of_a_megapixel());
+  EXPECT_LT(seconds_of_search(crossed_lines(random)), max_searches * seconds_of_a_megapixel());
 }
 
 TEST(AnyFrame, IsTheSameForAnyNumberOfThreads) {

@@ -22,8 +22,8 @@ inline constexpr double pole_cos_out = 1e-6;  // f is finite down to here
 
 inline double per_sr(const Lambert& m, const Reflection&, double) { return m.reflectance / pi; }
 
-/// With 1/cos_out of the lobe limited to 1/`least_cos`.
-inline double per_sr(const SandfordRobertson& m, const Reflection& at, double least_cos) {
+/// With 1/cos_out of the lobe limited to 1/`min_cos`.
+inline double per_sr(const SandfordRobertson& m, const Reflection& at, double min_cos) {
   const double mean = sandford_robertson_mean(m.grazing);
   const double falloff_in = sandford_robertson_falloff(at.cos_in, m.grazing);
   const double falloff_out = sandford_robertson_falloff(at.cos_out, m.grazing);
@@ -38,7 +38,7 @@ inline double per_sr(const SandfordRobertson& m, const Reflection& at, double le
   const double lobe = 1.0 / (root * root);
   const double norm = sandford_robertson_lobe_norm(at.cos_in, m.lobe_width);
   return diffuse +
-         std::max(0.0, specular) * lobe / (4.0 * pi * norm * std::max(at.cos_out, least_cos));
+         std::max(0.0, specular) * lobe / (4.0 * pi * norm * std::max(at.cos_out, min_cos));
 }
 
 inline double per_sr(const Phong& m, const Reflection& at, double) {
@@ -56,10 +56,10 @@ inline double brdf_per_sr(const Brdf& brdf, const Reflection& at) {
 }
 
 /// f cos_in cos_out: radiant intensity of a unit area in a unit irradiance [1/sr], with
-/// `least_cos_out`. Finite everywhere, continuous to 0 at grazing exit.
+/// `min_cos_out`. Finite everywhere, continuous to 0 at grazing exit.
 inline double reflected_per_sr(const Brdf& brdf, const Reflection& at) {
   if (!(at.cos_in > 0.0 && at.cos_out > 0.0)) return 0.0;
-  return std::visit([&](const auto& model) { return per_sr(model, at, least_cos_out); }, brdf) *
+  return std::visit([&](const auto& model) { return per_sr(model, at, min_cos_out); }, brdf) *
          at.cos_in * at.cos_out;
 }
 

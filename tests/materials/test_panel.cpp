@@ -61,16 +61,16 @@ TEST(Panel, OfAStarlinkHangsOnTheEdgeOfItsArray) {
   const HingedPanel panel = starlink_like_panel();
   Mesh open = rest;  // the Sun in the zenith: an open book
   turn_panel(open, panel.hinge_m, panel_rotation(panel.axes, {0, 0, -1}));
-  double least_y = 0, most_y = -1e9;
+  double min_y = 0, max_y = -1e9;
   const auto turns = panel_vertices(rest);
   for (std::size_t i = 0; i < turns.size(); ++i) {
     if (!turns[i]) continue;
     EXPECT_NEAR(open.vertex_m[i].z, -0.2, 1e-14);
-    least_y = std::min(least_y, open.vertex_m[i].y);
-    most_y = std::max(most_y, open.vertex_m[i].y);
+    min_y = std::min(min_y, open.vertex_m[i].y);
+    max_y = std::max(max_y, open.vertex_m[i].y);
   }
-  EXPECT_NEAR(most_y, 0.0, 1e-14);
-  EXPECT_NEAR(least_y, -8.0, 1e-14);  // 22 m2 of 2.75 m
+  EXPECT_NEAR(max_y, 0.0, 1e-14);
+  EXPECT_NEAR(min_y, -8.0, 1e-14);  // 22 m2 of 2.75 m
 }
 
 // The farthest vertex over all angles in steps of 0.1 deg: short of the circle by 4e-7 at most.
@@ -79,7 +79,7 @@ TEST(Panel, IsWithinItsRadiusAtEveryAngle) {
        {std::pair{box_wing({}, {}, {}, {}), HingedPanel{{}, {1, 2, 3}}},
         {box_wing({}, {}, {}, {}), HingedPanel{{.hinge = unit(Vec<Body>{1, 1, 0})}, {}}},
         {starlink_like({}, {}, {}), starlink_like_panel()}}) {
-    double most_m = 0;
+    double max_m = 0;
     for (int i = 0; i < 3600; ++i) {
       const double angle = i * 0.1 * deg;
       const Vec<Body> across = cross(panel.axes.hinge, panel.axes.normal);
@@ -87,10 +87,10 @@ TEST(Panel, IsWithinItsRadiusAtEveryAngle) {
       turn_panel(turned, panel.hinge_m,
                  panel_rotation(panel.axes,
                                 panel.axes.normal * std::cos(angle) + across * std::sin(angle)));
-      most_m = std::max(most_m, radius_m(turned));
+      max_m = std::max(max_m, radius_m(turned));
     }
-    EXPECT_NEAR(most_m / radius_m(mesh, panel), 1.0, 1e-6);
-    EXPECT_LE(most_m, radius_m(mesh, panel) * (1 + 1e-15));
+    EXPECT_NEAR(max_m / radius_m(mesh, panel), 1.0, 1e-6);
+    EXPECT_LE(max_m, radius_m(mesh, panel) * (1 + 1e-15));
   }
 }
 

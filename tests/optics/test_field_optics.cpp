@@ -353,9 +353,9 @@ TEST(FocusDrift, GoesWithTimeAndTheDaysTemperature) {
   // Half an hour after its second noon: 1 um/h of rise against the cosine.
   double most = 0;
   for (int s = 0; s <= 48 * 3600; s += 10) most = std::max(most, drift.at_m(s));
-  EXPECT_GE(drift.most_m(), most);
-  EXPECT_LT(drift.most_m(), 1.0001 * most);
-  EXPECT_EQ(FocusDrift{}.most_m(), 0.0);
+  EXPECT_GE(drift.max_m(), most);
+  EXPECT_LT(drift.max_m(), 1.0001 * most);
+  EXPECT_EQ(FocusDrift{}.max_m(), 0.0);
   EXPECT_FALSE((FocusDrift{.um_per_k = 3.0}).any());
 }
 

@@ -236,7 +236,7 @@ TEST(PsfPlan, TheWidthIsThatOfTheKernelForEveryOuterScale) {
 // their transfer functions draw near it.
 TEST(PsfModel, ExposuresBetweenConvergeToTheLongOne) {
   Optics o = telescope();
-  o.spread.most_screens = 1000;
+  o.spread.max_screens = 1000;
   const SensorSeeing seeing{.r0_m = 0.1, .outer_scale_m = 20.0, .wind_m_per_s = 10.0};
   const double tau0 = seeing.tau0_s(lambda);
   EXPECT_EQ(plan_psf(o, lambda, seeing, 0.9 * tau0).exposure, ExposureKind::brief);

@@ -9,14 +9,14 @@
 int main(int count, char** words) {
   using namespace dmise;
   const bool collides = count > 1 && std::string(words[1]) == "collision";
-  BreakupEvent event{.mass_kg = 1e6, .scale = 8.0, .least_length_m = 0.02};
+  BreakupEvent event{.mass_kg = 1e6, .scale = 8.0, .min_length_m = 0.02};
   if (collides)
     event = {.kind = BreakupKind::collision,
              .structure = BrokenStructure::spacecraft,
              .mass_kg = 900.0,
              .projectile_mass_kg = 556.0,
              .relative_speed_m_per_s = 11700.0,
-             .least_length_m = 0.02};
+             .min_length_m = 0.02};
   const DrawnPieces drawn = draw_pieces(event, 1, "breakup");
   std::printf("%d\n", drawn.too_heavy);
   for (const auto& p : drawn.pieces)

@@ -56,7 +56,7 @@ TEST(Breakup, FortyJoulesAGramAreCatastrophic) {
 
 TEST(Breakup, PiecesWeighNoMoreThanWhatBroke) {
   for (const double mass_kg : {1.0, 50.0, 900.0}) {
-    const BreakupEvent event{.mass_kg = mass_kg, .least_length_m = 0.05};
+    const BreakupEvent event{.mass_kg = mass_kg, .min_length_m = 0.05};
     const DrawnPieces drawn = draw_pieces(event, 3, "b");
     const double sum_kg =
         std::accumulate(drawn.pieces.begin(), drawn.pieces.end(), 0.0,
@@ -87,14 +87,14 @@ TEST(Breakup, SeedsDrawAnew) {
 // All pieces are at one point at one instant, each with the speed that it was given.
 TEST(Breakup, TenThousandPiecesBeginAtOnePoint) {
   BreakupEvent event = collision_of(2000, 100, 10000);
-  event.least_length_m = 0.0372;
+  event.min_length_m = 0.0372;
   const Breakup breakup = breakup_of(event);
   const Fragments made = fragments_of(breakup, 1, breakup_time);
   ASSERT_GT(made.elements.size(), 8000u);
   EXPECT_EQ(int(made.elements.size()) + made.open + made.no_path + made.too_heavy,
-            breakup.most_fragments());
-  EXPECT_GE(breakup.most_fragments(), 8600);
-  EXPECT_LE(made.no_path, breakup.most_fragments() / 1000);
+            breakup.fragment_count());
+  EXPECT_GE(breakup.fragment_count(), 8600);
+  EXPECT_LE(made.no_path, breakup.fragment_count() / 1000);
   const Sgp4Batch batch(made.elements);
   for (std::size_t k = 0; k < made.elements.size(); ++k) {
     const Sgp4State state = batch.propagate_one(k, 0.0);
@@ -115,7 +115,7 @@ TEST(Breakup, WhatLeavesTheEarthOrEntersItIsCounted) {
   breakup.parent.velocity_m_per_s = {0, 800.0, 12000.0};
   const Fragments open = fragments_of(breakup, 1, breakup_time);
   EXPECT_TRUE(open.elements.empty());
-  EXPECT_EQ(open.open + open.too_heavy, breakup.most_fragments());
+  EXPECT_EQ(open.open + open.too_heavy, breakup.fragment_count());
   breakup.parent.velocity_m_per_s = {0, 400.0, 6000.0};
   const Fragments falling = fragments_of(breakup, 1, breakup_time);
   EXPECT_GT(falling.falling, int(falling.elements.size()) / 2);

@@ -16,7 +16,7 @@ TEST(Outlook, ItsLimitingMagnitudeIsThatOfTheFrame) {
         std::string(camera) + "}]\n");
     const Clock clock = make_clock(stage.scenario);
     const SensorOutlook outlook = sensor_outlook(stage.scenario, stage.scenario.sensors[0], {},
-                                                 clock, nullptr, stage.threads, {.most_frames = 0});
+                                                 clock, nullptr, stage.threads, {.max_frames = 0});
     ASSERT_TRUE(outlook.mid_run && outlook.mid_run->point_limit_v_mag) << camera;
     EXPECT_TRUE(outlook.frames.empty());
     const FrameReport report = stage.frame().report;

@@ -54,7 +54,7 @@ TEST(StarLight, TheTableIsTheIntegralTo1e4) {
       const double rate = zero_point_photons_per_s_m2(johnson_v()) * photon_rate(star, band) /
                           photon_rate(star, johnson_v());
       EXPECT_NEAR(light.photons_per_s_m2(0.0, colour), rate, 3e-4 * rate) << kind << ' ' << bv;
-      EXPECT_LE(rate, light.most_photons_per_s_m2(0.0) * (1.0 + 3e-4)) << kind << ' ' << bv;
+      EXPECT_LE(rate, light.max_photons_per_s_m2(0.0) * (1.0 + 3e-4)) << kind << ' ' << bv;
     }
 }
 

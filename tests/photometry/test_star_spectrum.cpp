@@ -105,11 +105,11 @@ TEST(StarSpectrum, HasTheColoursOfPicklesStars) {
   EXPECT_NEAR(sum_vi / double(std::size(stars)), 0.0, 0.045);
 }
 
-void expect_vri(const PicklesStar& star, StarKind kind, double most_ri_mag) {
+void expect_vri(const PicklesStar& star, StarKind kind, double max_ri_mag) {
   const StarColour colour{star.bv, kind};
   const double v = magnitude("bessell-V", colour);
   EXPECT_NEAR(v - magnitude("bessell-R", colour), star.vr, 0.15) << star.type;
-  EXPECT_NEAR(v - magnitude("bessell-I", colour), star.vi, most_ri_mag) << star.type;
+  EXPECT_NEAR(v - magnitude("bessell-I", colour), star.vi, max_ri_mag) << star.type;
 }
 
 // In B and U these spectra have other colours than stars of the catalogues: B-V = 1.44 at M0 III,

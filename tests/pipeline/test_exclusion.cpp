@@ -137,8 +137,8 @@ std::string turning_past_sun(double exposure_s, double after_s, double rate_deg_
 TEST(Exclusion, IsByTheLeastAngleOfATurnPastTheSun) {
   for (const double rate_deg_per_s : {-0.9, 0.5, 0.9}) {
     Stage stage(turning_past_sun(10.0, 3.4, rate_deg_per_s));
-    const double least_rad = *angles_of(stage, sun(40.0)).sun_rad;
-    EXPECT_NEAR(least_rad / deg, 3.0, 2e-4) << rate_deg_per_s;  // the place moves in the Sun's way
+    const double min_rad = *angles_of(stage, sun(40.0)).sun_rad;
+    EXPECT_NEAR(min_rad / deg, 3.0, 2e-4) << rate_deg_per_s;  // the place moves in the Sun's way
     EXPECT_TRUE(excluded(stage, sun(3.001)).sun);
     EXPECT_FALSE(excluded(stage, sun(2.999)).sun);
     const auto& sensor = stage.scenario.sensors[0];
@@ -146,7 +146,7 @@ TEST(Exclusion, IsByTheLeastAngleOfATurnPastTheSun) {
     for (const SimTime t : {view.times().start, view.times().middle, view.times().end})
       EXPECT_GT(angle_rad(view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1},
                           truly_seen_sun(view, t).apparent),
-                least_rad + 0.02 * deg);
+                min_rad + 0.02 * deg);
   }
 }
 

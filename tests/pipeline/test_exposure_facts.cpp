@@ -83,11 +83,11 @@ TEST(SkyFacts, TheHorizonIsSeenWhereTheFieldReachesIt) {
   const PlanFacts high = Field{}.facts();
   EXPECT_FALSE(high.sees_horizon);
   const double lowest_rad = 52.0 * deg - half_diagonal_rad;
-  EXPECT_GT(high.most_airmass, 1.0 / std::sin(52.0 * deg));
-  EXPECT_LT(high.most_airmass, 1.0 / std::sin(lowest_rad));
+  EXPECT_GT(high.max_airmass, 1.0 / std::sin(52.0 * deg));
+  EXPECT_LT(high.max_airmass, 1.0 / std::sin(lowest_rad));
   const PlanFacts low = Field{.pointing = "{azimuth_deg: 168.7, elevation_deg: 12}"}.facts();
   EXPECT_FALSE(low.sees_horizon);
-  EXPECT_GT(low.most_airmass, 4.6);  // 4.71 at 12 deg (Kasten and Young 1989)
+  EXPECT_GT(low.max_airmass, 4.6);  // 4.71 at 12 deg (Kasten and Young 1989)
   EXPECT_TRUE(Field{.pointing = "{azimuth_deg: 168.7, elevation_deg: 1}"}.facts().sees_horizon);
 }
 

@@ -69,7 +69,7 @@ TEST(ExposurePlanner, ErrorsStayWithinTheBudgetThatIsStated) {
                                "{photometry_mag: 0, background_sigma: 1000}"}) {
     const FrameProducts frame = Scene{.accuracy = accuracy}.frame();
     EXPECT_TRUE(frame.plan.error.within(frame.plan.budget)) << accuracy;
-    EXPECT_LE(frame.plan.least_cost_s, frame.plan.cost_s) << accuracy;
+    EXPECT_LE(frame.plan.min_cost_s, frame.plan.cost_s) << accuracy;
     EXPECT_EQ(frame.header.error, frame.plan.error);
     EXPECT_FALSE(frame.header.accuracy.empty());
   }

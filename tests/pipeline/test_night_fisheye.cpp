@@ -29,7 +29,7 @@ std::string night_fisheye(int frames) {
 
 struct Seen {
   std::size_t detections = 0;
-  std::uint32_t most_stars = 0;  // in a frame
+  std::uint32_t max_stars = 0;  // in a frame
 };
 
 Seen seen_in(const std::string& scenario, int frames) {
@@ -38,14 +38,14 @@ Seen seen_in(const std::string& scenario, int frames) {
   for (int frame = 1; frame <= frames; ++frame) {
     const auto products = stage.frame(std::uint32_t(frame));
     seen.detections += products.detections.size();
-    seen.most_stars = std::max(seen.most_stars, products.report.stars_rendered);
+    seen.max_stars = std::max(seen.max_stars, products.report.stars_rendered);
   }
   return seen;
 }
 
 TEST(NightFisheye, StarsAloneGiveAtMostOneDetectionIn30Frames) {
   const Seen seen = seen_in(night_fisheye(30), 30);
-  EXPECT_GT(seen.most_stars, 50000u);
+  EXPECT_GT(seen.max_stars, 50000u);
   EXPECT_LE(seen.detections, 1u);
 }
 
@@ -59,7 +59,7 @@ TEST(NightSwir, HotPixelsOfTheCameraAreNoObjects) {
       "sensors: [{name: swir, site: atlanta, camera: omnissa-swir, pointing: zenith,"
       " exposure_s: 0.5, cadence_s: 2, sky: dark}]\n",
       20);
-  EXPECT_GT(seen.most_stars, 10000u);
+  EXPECT_GT(seen.max_stars, 10000u);
   EXPECT_LE(seen.detections, 1u);
 }
 

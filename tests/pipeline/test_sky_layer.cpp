@@ -116,7 +116,7 @@ TEST(SkyOverTime, ATransitOfTheZenithByTheCamerasAxis) {
   EXPECT_LT(steps.first, 0.01);
   EXPECT_LT(steps.second, 0.01);
   PixelPosition first{};
-  double least_zenith_deg = 90;
+  double min_zenith_deg = 90;
   for (std::uint32_t frame = 1; frame <= 20; ++frame) {
     const auto made = stage.frame(frame);
     ASSERT_EQ(made.stars.size(), 1u);
@@ -128,10 +128,9 @@ TEST(SkyOverTime, ATransitOfTheZenithByTheCamerasAxis) {
     const View view(config, frame_times(config, frame), stage.world);
     const auto axis =
         view.camera_from_gcrs(view.times().middle).inverse() * Vec<CameraFrame>{0, 0, 1};
-    least_zenith_deg =
-        std::min(least_zenith_deg, angle_rad(axis, view.up(view.times().middle)) / deg);
+    min_zenith_deg = std::min(min_zenith_deg, angle_rad(axis, view.up(view.times().middle)) / deg);
   }
-  EXPECT_LT(least_zenith_deg, 0.5);
+  EXPECT_LT(min_zenith_deg, 0.5);
 }
 
 TEST(SkyLayer, BelowTheHorizonIsDarkAndNothingIsNan) {

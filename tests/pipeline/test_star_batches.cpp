@@ -30,7 +30,7 @@ struct Catalogues {
     std::uniform_real_distribution<double> uniform(0, 1);
     std::normal_distribution<double> normal;
     StarCatalogue all, few;
-    for (std::uint32_t id = 1; id <= most_stars_at_once + 100; ++id) {
+    for (std::uint32_t id = 1; id <= max_stars_at_once + 100; ++id) {
       StarRecord star{.id = id, .v_mag = 13.0, .bv = 2.4 * uniform(random) - 0.4};
       Vec<Gcrs> at = -zenith;
       if (id <= bright) {

@@ -56,7 +56,7 @@ TEST(Knapsack, IsWithinTwoPercentOfTheBestOfAllCombinations) {
     ErrorBound error;
     for (std::size_t k = 0; k < choices.size(); ++k) error += choices[k][result.option[k]].error;
     EXPECT_TRUE(error.within(budget + ErrorBound{1e-9, 1e-9, 1e-9, 1e-9}));
-    EXPECT_LE(result.least_cost_s, best.cost_s * (1 + 1e-9)) << "no bound, case " << i;
+    EXPECT_LE(result.min_cost_s, best.cost_s * (1 + 1e-9)) << "no bound, case " << i;
     EXPECT_GE(result.cost_s, best.cost_s * (1 - 1e-9));
     sum += result.cost_s, best_sum += best.cost_s;
     worst = std::max(worst, result.cost_s / best.cost_s);
@@ -83,7 +83,7 @@ TEST(Knapsack, AnUnboundedBudgetTakesTheCheapest) {
   for (std::size_t k = 0; k < choices.size(); ++k)
     for (const auto& option : choices[k])
       EXPECT_LE(choices[k][result.option[k]].cost_s, option.cost_s);
-  EXPECT_DOUBLE_EQ(result.cost_s, result.least_cost_s);
+  EXPECT_DOUBLE_EQ(result.cost_s, result.min_cost_s);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 constexpr EffectFacts chosen{"chosen", "", "", ""}, kept{"kept", "", "", ""};
 
 EffectPlan plan_of_two() {
-  EffectPlan plan{.budget = not_bounded, .error = {.position_px = 0.5}, .least_cost_s = 0.1};
+  EffectPlan plan{.budget = not_bounded, .error = {.position_px = 0.5}, .min_cost_s = 0.1};
   plan.planned = {
       {.facts = &chosen, .level = 1, .cost_s = 0.25, .cheaper = not_bounded, .decided = true},
       {.facts = &kept, .level = 1}};

@@ -27,7 +27,7 @@ Optics camera_of(const Projection& projection, double field_deg, int columns, in
 
 void expect_one_to_one_at_every_pixel(const Optics& optics) {
   ASSERT_FALSE(fold_in_frame_rad(optics));
-  constexpr double least_z = -0.8;  // beyond, directions turn too fast for differences
+  constexpr double min_z = -0.8;  // beyond, directions turn too fast for differences
   const double f = optics.focal_length_px(), step_px = std::min(0.5, 1e-4 * f);
   double worst_px = 0.0, worst_rad = 0.0, worst_sr = 0.0;
   int seen = 0;
@@ -43,7 +43,7 @@ void expect_one_to_one_at_every_pixel(const Optics& optics) {
       const auto again = unproject(optics, *back);
       ASSERT_TRUE(again) << x << " " << y;
       worst_rad = std::max(worst_rad, angle_rad(*again, *direction));
-      if (direction->z < least_z) continue;
+      if (direction->z < min_z) continue;
       const auto left = unproject(optics, {x - step_px, double(y)}),
                  right = unproject(optics, {x + step_px, double(y)}),
                  above = unproject(optics, {double(x), y - step_px}),
@@ -80,13 +80,13 @@ std::vector<PixelPosition> places_by_opencv(const std::string& model,
 }
 
 void expect_as_opencv(const Projection& projection, const std::string& model,
-                      const std::vector<double>& coefficients, double most_rad) {
+                      const std::vector<double>& coefficients, double max_rad) {
   if (std::system("/usr/bin/python3 -c 'import cv2' 2> /dev/null") != 0)
     DMISE_SKIP() << "needs python3-opencv";
   std::vector<Vec<CameraFrame>> directions;
   for (int i = 0; i <= 60; ++i)
     for (int k = 0; k < 12; ++k) {
-      const double theta = most_rad * i / 60, phi = 2 * pi * k / 12 + 0.1;
+      const double theta = max_rad * i / 60, phi = 2 * pi * k / 12 + 0.1;
       directions.push_back(
           {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
     }

@@ -22,9 +22,9 @@ std::vector<PixelPosition> places_by_opencv(const std::string& model,
                                             const std::vector<double>& coefficients,
                                             const std::vector<Vec<CameraFrame>>& directions);
 
-/// Expects that directions spread over half angles up to `most_rad` fall where OpenCV puts them,
+/// Expects that directions spread over half angles up to `max_rad` fall where OpenCV puts them,
 /// and that those places are seen back, to 1e-9. Skips where OpenCV is not installed.
 void expect_as_opencv(const Projection& projection, const std::string& model,
-                      const std::vector<double>& coefficients, double most_rad);
+                      const std::vector<double>& coefficients, double max_rad);
 
 }  // namespace dmise::test

@@ -23,7 +23,7 @@ std::vector<double> values_of(const EmbeddedImage& image) {
     const unsigned difference = (unsigned(bytes[i]) & 255u) | (unsigned(bytes[size + i]) & 255u)
                                                                   << 8;
     numbers.push_back((before + difference) & 0xffffu);
-    values.push_back(image.least_dn + image.step_dn * numbers.back());
+    values.push_back(image.min_dn + image.step_dn * numbers.back());
   }
   return values;
 }

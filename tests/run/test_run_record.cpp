@@ -93,12 +93,12 @@ TEST_F(RunRecords, SatellitesOfAConstellationAreObjectsWithElements) {
 }
 
 TEST_F(RunRecords, FragmentsAreObjectsWithElements) {
-  const auto record = [](const std::string& least_m) {
+  const auto record = [](const std::string& min_m) {
     return R"({"status":"complete","seed":7,"scenario":{"simulation":{"start":
 "2018-01-21T00:00:00Z","duration_ns":1000000000,"tick_ns":1000000000},"sensors":[],"objects":[
 {"breakup":"b","first_number":990000001,"collision":false,"spacecraft":false,
 "event":[900,1,0,0,)" +
-           least_m + R"(],"teme":[2458138.5,0.75,7158135,0,0,0,468.6,7447.7],
+           min_m + R"(],"teme":[2458138.5,0.75,7158135,0,0,0,468.6,7447.7],
 "radius_m":1,"albedo":0.175,"only":[]}]}})";
   };
   write(record("0.2"));

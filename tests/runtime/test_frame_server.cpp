@@ -96,16 +96,16 @@ TEST(KeptFrames, AnswerForTheNumbersThatThereAre) {
 
 TEST(KeptFrames, AreTheLastOfABoundedNumberAndSize) {
   KeptFrames many("a");
-  for (std::uint32_t number = 1; number <= KeptFrames::most_frames + 10; ++number)
+  for (std::uint32_t number = 1; number <= KeptFrames::max_frames + 10; ++number)
     add(many, number, "");
   EXPECT_EQ(many.answer(next_after(0), run_id)->head.report().frame(), 11u);
   EXPECT_EQ(many.answer(next_after(0), run_id)->head.sequence(), 11u);
 
   KeptFrames large("a");
   for (std::uint32_t number = 1; number <= 5; ++number)
-    add(large, number, "", KeptFrames::most_bytes / 2);
+    add(large, number, "", KeptFrames::max_bytes / 2);
   EXPECT_EQ(large.answer(next_after(0), run_id)->head.oldest_frame(), 4u);
-  add(large, 6, "", 2 * KeptFrames::most_bytes);
+  add(large, 6, "", 2 * KeptFrames::max_bytes);
   EXPECT_EQ(large.answer(next_after(0), run_id)->head.oldest_frame(), 6u);
   large.add(report(7), {});  // nobody is there: it is counted
   add(large, 8, "", 1);
@@ -242,7 +242,7 @@ TEST(FrameServer, KeepsNothingForWhoDoesNotRead) {
   auto reader = sensor.reader();
   ask(reader, asking(10));
   EXPECT_EQ(hear(reader).first, 10u);
-  EXPECT_LE(most.load(), 20 * FrameServer::most_unread + 1);  // of 2,000
+  EXPECT_LE(most.load(), 20 * FrameServer::max_unread + 1);  // of 2,000
 }
 
 TEST(FrameServer, WithKeysAnswersThoseWhoMayComeIn) {

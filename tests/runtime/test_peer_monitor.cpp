@@ -91,7 +91,7 @@ TEST(ConnectionLimits, CloseSubscriptionsWithoutEnd) {
 }
 
 TEST(ConnectionLimits, CloseStrangersBeyondTheirNumberButNobodyWhoIsKnown) {
-  Place place(zmq::socket_type::router, {.usual_strangers = 10, .most_strangers = 20});
+  Place place(zmq::socket_type::router, {.usual_strangers = 10, .max_strangers = 20});
   auto known = make_socket(place.context, zmq::socket_type::dealer, max_control_bytes);
   connect_to(known, place.address);
   known.send(zmq::str_buffer("I am a"), zmq::send_flags::none);
@@ -120,9 +120,9 @@ TEST(ConnectionLimits, CloseStrangersBeyondTheirNumberButNobodyWhoIsKnown) {
 
 TEST(ConnectionLimits, LeaveRoomForTheNodesOfARun) {
   const ConnectionLimits few = limits_for(3, 0.2), many = limits_for(1000, 0.2);
-  EXPECT_GE(few.most_strangers, 16u);
-  EXPECT_GE(many.most_strangers, 2000u);  // all join at once
-  EXPECT_LE(few.usual_strangers, few.most_strangers);
+  EXPECT_GE(few.max_strangers, 16u);
+  EXPECT_GE(many.max_strangers, 2000u);  // all join at once
+  EXPECT_LE(few.usual_strangers, few.max_strangers);
 }
 
 }  // namespace

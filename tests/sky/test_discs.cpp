@@ -79,7 +79,7 @@ TEST(MoonDisc, ACrescentEndsAtNewMoon) {
   // The magnitude goes on without a step; the lit limb is never brighter than at full Moon.
   EXPECT_NEAR(moon_disc_v_mag(159.999 * deg), moon_disc_v_mag(160.001 * deg), 1e-3);
   for (const double phase_deg : {160.0, 170.0, 175.0, 178.0, 179.9}) {
-    EXPECT_LT(at(phase_deg).most_photons_per_s_m2_sr(), 0.2 * at(8).most_photons_per_s_m2_sr());
+    EXPECT_LT(at(phase_deg).max_photons_per_s_m2_sr(), 0.2 * at(8).max_photons_per_s_m2_sr());
     EXPECT_GT(at(phase_deg).photons_per_s_m2(), 0.0);
   }
   EXPECT_EQ(at(180).photons_per_s_m2(), 0.0);
@@ -135,7 +135,7 @@ TEST(EarthDisc, IsTheEllipsoid) {
   const double e2 = 6.69437999014e-3, n = 6378137.0 / std::sqrt(1 - e2 / 2);
   const Vec<Gcrs> ground{n * std::sqrt(0.5), 0, n * (1 - e2) * std::sqrt(0.5)};
   const Vec<Gcrs> line = ground - Vec<Gcrs>{distance_m, 0, 0};
-  EXPECT_NEAR(seen.photons_per_s_m2_sr(line) / seen.most_photons_per_s_m2_sr(), std::sqrt(0.5),
+  EXPECT_NEAR(seen.photons_per_s_m2_sr(line) / seen.max_photons_per_s_m2_sr(), std::sqrt(0.5),
               1e-6);
 }
 

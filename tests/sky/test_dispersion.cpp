@@ -56,7 +56,7 @@ TEST(Dispersion, IsErfasRefractionOverTheBand) {
   for (const Row& row : rows) {
     const auto dispersion = dispersion_in(band_named(row.band), *extinction_of_site("ctio"));
     const Spectrum ours =
-        spectrum(dispersion, (90 - row.zenith_deg) * deg, row.bv, BandDispersion::most_cells);
+        spectrum(dispersion, (90 - row.zenith_deg) * deg, row.bv, BandDispersion::max_cells);
     const std::string where =
         std::string(row.band) + " of " + row.spectrum + " at " + std::to_string(row.zenith_deg);
     // Spectra of stars by B-V are smooth: Vega's lines and Balmer jump are not in them.
@@ -74,7 +74,7 @@ TEST(Dispersion, IsErfasRefractionOverTheBand) {
 TEST(Dispersion, CellsKeepLightAndCentroid) {
   const auto dispersion = dispersion_in(band_named("B"));
   const double elevation = 25 * deg;
-  const Spectrum whole = spectrum(dispersion, elevation, 1.4, BandDispersion::most_cells);
+  const Spectrum whole = spectrum(dispersion, elevation, 1.4, BandDispersion::max_cells);
   const auto [blue_rad, red_rad] = dispersion.ends(elevation);
   for (const int count : {1, 2, 8, 32}) {
     const Spectrum cut = spectrum(dispersion, elevation, 1.4, count);
@@ -141,7 +141,7 @@ TEST(Dispersion, LevelsAreWidthsOfCells) {
   EXPECT_EQ(Dispersion::cells(2, 0.5), 1);
   EXPECT_EQ(Dispersion::cells(2, 3.0), 4);
   EXPECT_EQ(Dispersion::cells(4, 3.0), 32);
-  EXPECT_EQ(Dispersion::cells(4, 1e9), BandDispersion::most_cells);
+  EXPECT_EQ(Dispersion::cells(4, 1e9), BandDispersion::max_cells);
 }
 
 }  // namespace

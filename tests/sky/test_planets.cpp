@@ -37,14 +37,14 @@ Seen seen_from_the_earth(Planet planet, const Tt& tt) {
 }
 
 TEST(Planets, ApparentPlacesAreWithinHalfAnArcsecOfDe421) {
-  double most_rad = 0.0;
+  double max_rad = 0.0;
   for (const auto& r : reference) {
     const Seen seen = seen_from_the_earth(Planet(r.planet), {r.tt_jd, 0.0});
     const double off_rad = angle_rad(seen.place.direction, r.direction);
     EXPECT_LT(off_rad, 0.5 * arcsec) << facts_of(Planet(r.planet)).name << " " << r.tt_jd;
-    most_rad = std::max(most_rad, off_rad);
+    max_rad = std::max(max_rad, off_rad);
   }
-  RecordProperty("largest_arcsec", std::to_string(most_rad / arcsec));
+  RecordProperty("largest_arcsec", std::to_string(max_rad / arcsec));
 }
 
 // Uranus and Neptune are at times beyond the phase angles that the Earth's formulae are for, by a

@@ -214,7 +214,7 @@ TEST_F(StarCache, WrongValuesArePassedOverThoughTheirChecksumsAreRight) {
 // A large map is not read as a whole: a damaged block is found when its stars are looked for.
 TEST_F(StarCache, DamageOfALargeMapIsFoundWhereItIs) {
   StarCatalogue stars;
-  const std::size_t count = most_stars_at_once + 5000;
+  const std::size_t count = max_stars_at_once + 5000;
   for (std::size_t i = 0; i < count; ++i)
     append_star(stars, {.id = std::uint32_t(i),
                         .ra_rad = 6.28 * double(i) / double(count),

@@ -45,7 +45,7 @@ TEST(StarIndex, FindsExactlyTheStarsInTheCone) {
 }
 
 TEST(StarIndex, FindsExactlyTheStarsInConesOfAManyTieredCatalogue) {
-  const StarMap map = star_map_of(random_stars(most_stars_at_once + 100'000, 22.0));
+  const StarMap map = star_map_of(random_stars(max_stars_at_once + 100'000, 22.0));
   ASSERT_GT(map.index.tiers.size(), 1u);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);

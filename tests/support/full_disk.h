@@ -5,13 +5,13 @@
 
 namespace dmise::test {
 
-/// While it lives, no file of this process grows beyond `most_bytes`: what a full disk is, but for
+/// While it lives, no file of this process grows beyond `max_bytes`: what a full disk is, but for
 /// the name of the error, "File too large".
 class FullDisk {
  public:
-  explicit FullDisk(rlim_t most_bytes) : listener_(std::signal(SIGXFSZ, SIG_IGN)) {
+  explicit FullDisk(rlim_t max_bytes) : listener_(std::signal(SIGXFSZ, SIG_IGN)) {
     getrlimit(RLIMIT_FSIZE, &limit_);
-    const rlimit less{most_bytes, limit_.rlim_max};
+    const rlimit less{max_bytes, limit_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &less);
   }
   ~FullDisk() {

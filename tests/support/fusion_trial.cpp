@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-constexpr double least_elevation_sine = 0.17;
+constexpr double min_elevation_sine = 0.17;
 
 }  // namespace
 
@@ -86,12 +86,11 @@ SensorFrame FusionTrial::frame_of(const TrialSensor& sensor, const Vec<Gcrs>& ax
   for (std::size_t n = 0; n < objects_.size(); ++n) {
     // Sites that see more than they may tell do not all tell of the same.
     const std::size_t i = (n + sensor.first_object) % objects_.size();
-    if (!paths_.known(i) || frame.sources.size() >= settings_.most_per_frame) continue;
+    if (!paths_.known(i) || frame.sources.size() >= settings_.max_per_frame) continue;
     const Vec<Gcrs> r = paths_.position_m(i);
     Vec<Gcrs> line = r - frame.sensor_m;
     const double range = norm(line);
-    if (dot(line, up) < least_elevation_sine * range || dot(line, axis) < cos_field * range)
-      continue;
+    if (dot(line, up) < min_elevation_sine * range || dot(line, axis) < cos_field * range) continue;
     if (lit_[i] < 0) lit_[i] = shadow_->sunlit_fraction(r);
     if (lit_[i] < 0.5) continue;
     line = line - paths_.velocity_m_per_s(i) * (norm(line) / speed_of_light_m_per_s);

@@ -20,7 +20,7 @@ struct FusionTrialSettings {
   double detection_probability = 0.9;   // of what is lit and brighter than the limit
   double false_alarms_per_frame = 0.0;  // mean
   double limiting_magnitude = 0.0;
-  std::size_t most_per_frame = 1000000;
+  std::size_t max_per_frame = 1000000;
   std::uint64_t seed = 1;
 };
 

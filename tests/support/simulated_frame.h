@@ -83,12 +83,12 @@ class SimulatedFrame {
               sagitta);
   }
   /// `count` stars at random places, in number 10^(0.4 * 1.1 m)-like: N(> flux) as flux^-1.1.
-  void add_stars(int count, double least_e, double most_e) {
+  void add_stars(int count, double min_e, double max_e) {
     for (int i = 0; i < count; ++i) {
       const double x = uniform(-5, electrons_.columns + 5), y = uniform(-5, electrons_.rows + 5);
       const double u = uniform(0, 1), p = -1 / 1.1;
-      const double top = std::pow(most_e / least_e, -1.1);
-      add_star(x, y, least_e * std::pow(1 - u * (1 - top), p));
+      const double top = std::pow(max_e / min_e, -1.1);
+      add_star(x, y, min_e * std::pow(1 - u * (1 - top), p));
     }
   }
 

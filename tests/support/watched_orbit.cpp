@@ -29,14 +29,14 @@ std::vector<OrbitWatcher> network(const std::vector<NamedSite>& sites,
                    .site = s.site,
                    .sigma_rad = 20 * arcsec,
                    .limiting_magnitude = 7,
-                   .least_elevation_rad = 20 * deg});
+                   .min_elevation_rad = 20 * deg});
   for (const NamedSite& s : sites)
     if (std::ranges::find(with_telescope, s.name) != with_telescope.end())
       out.push_back({.name = s.name + "-telescope",
                      .site = s.site,
                      .sigma_rad = 1 * arcsec,
                      .limiting_magnitude = 14,
-                     .least_elevation_rad = 20 * deg,
+                     .min_elevation_rad = 20 * deg,
                      .most_of_a_pass = 3});
   return out;
 }
@@ -84,7 +84,7 @@ bool WatchedOrbit::sees(const OrbitWatcher& watcher, const Instant& now) const {
   const Vec<Gcrs> here = now.gcrs_from_itrs * itrs_from_geodetic(watcher.site);
   const Vec<Gcrs> line = now.state.position_m - here, up = unit(here);
   const double range_m = norm(line);
-  if (!now.lit || dot(line, up) < range_m * std::sin(watcher.least_elevation_rad) ||
+  if (!now.lit || dot(line, up) < range_m * std::sin(watcher.min_elevation_rad) ||
       dot(unit(now.sun_m), up) > night_sine)
     return false;
   const double phase_rad = angle_rad(now.sun_m - now.state.position_m, -line);

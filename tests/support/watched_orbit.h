@@ -19,7 +19,7 @@ struct OrbitWatcher {
   double sigma_rad = 0.0;  // of a direction, along each axis
   double limiting_magnitude = 0.0;
   double cadence_s = 30.0;
-  double least_elevation_rad = 0.0;
+  double min_elevation_rad = 0.0;
   int most_of_a_pass = 1000000;  // exposures
 };
 

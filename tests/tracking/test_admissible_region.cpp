@@ -72,7 +72,7 @@ TEST(AdmissibleRegion, BoundsAreOfEnergy) {
   for (const double range_m : {3e5, 1e6, 3e6}) {
     const RangeRates rates = bound_range_rates(*tracklet, range_m);
     if (rates.empty()) continue;
-    for (const double rate : {rates.least_m_per_s, rates.largest_m_per_s}) {
+    for (const double rate : {rates.min_m_per_s, rates.largest_m_per_s}) {
       const Vec<Gcrs> r = tracklet->sensor_m + range_m * tracklet->direction;
       const Vec<Gcrs> v = tracklet->sensor_m_per_s + rate * tracklet->direction +
                           range_m * tracklet->rate_rad_per_s;

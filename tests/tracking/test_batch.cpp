@@ -80,9 +80,9 @@ TEST(Batch, EstimatesAreOfTheObservationsThatAreTaken) {
     outlier.direction = unit(outlier.direction + 300 * arcsec * tangents.north);
   }
   int estimates = 0, refused = 0;
-  for (int most_iterations = 1; most_iterations <= 12; ++most_iterations) {
+  for (int max_iterations = 1; max_iterations <= 12; ++max_iterations) {
     const auto fit = fit_orbit(forces, trial.observations, displaced(trial.truth, 20e3, 30),
-                               {.reject_sigma = 6, .most_iterations = most_iterations});
+                               {.reject_sigma = 6, .max_iterations = max_iterations});
     if (!fit) {
       ++refused;
       continue;
@@ -94,7 +94,7 @@ TEST(Batch, EstimatesAreOfTheObservationsThatAreTaken) {
     const auto alone = fit_orbit(forces, taken, fit->estimate.state);
     ASSERT_TRUE(alone) << alone.reason;
     const auto &a = fit->estimate.covariance, &b = alone->estimate.covariance;
-    EXPECT_LT((a - b).norm(), 1e-3 * b.norm()) << most_iterations;
+    EXPECT_LT((a - b).norm(), 1e-3 * b.norm()) << max_iterations;
   }
   EXPECT_GT(estimates, 0);
   EXPECT_GT(refused, 0);

@@ -43,7 +43,7 @@ TEST(Lambert, PathsEndAtTheSecondPlace) {
     const Vec<Gcrs> start = place(), end = place();
     const double duration_s = 60 * std::pow(2000.0, dice());
     LambertSettings settings;
-    settings.most_turns = 3;
+    settings.max_turns = 3;
     for (const double sense : {1.0, -1.0}) {
       settings.normal = {0, 0, sense};
       const auto paths = lambert(start, end, duration_s, settings);

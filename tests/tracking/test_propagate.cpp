@@ -127,7 +127,7 @@ TEST(TrackingPropagate, RefusesWhatHasNoPath) {
   EXPECT_EQ(propagate(forces, broken, sim_seconds(1)).reason,
             "the state is not finite or out of range");
   PropagationSettings few;
-  few.most_steps = 3;
+  few.max_steps = 3;
   EXPECT_EQ(propagate(forces, low_orbit(), sim_seconds(86400), few).reason,
             "the path takes too many steps");
   EXPECT_EQ(*propagate(forces, low_orbit(), SimTime{}), low_orbit());

@@ -150,7 +150,7 @@ TEST(Passes, AGeostationaryObjectIsOneOpenPass) {
     if (!passes[0].open_start || !passes[0].open_end) continue;
     EXPECT_EQ(passes[0].rise.time.ns, 0);
     EXPECT_EQ(passes[0].set.time, watch.grid.last());
-    EXPECT_GT(passes[0].least_range_m, 35.7e6);
+    EXPECT_GT(passes[0].min_range_m, 35.7e6);
     EXPECT_GT(passes[0].lit_s, 0.94 * 86400);
     EXPECT_LT(passes[0].top.rate_rad_per_s, 1e-6);  // it stands in the frame
     return;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t card_size = 80, value_at = 10, block_size = 2880;
 constexpr std::size_t longest_number = 30;
 constexpr std::size_t longest_header = std::size_t(1) << 24;
-constexpr double largest_file = 1e15, most_axes = 99;
+constexpr double largest_file = 1e15, max_axes = 99;
 
 // CFITSIO reads these as numbers, and a long text overflows its message about it.
 constexpr std::string_view numbers[] = {
@@ -95,7 +95,7 @@ class HeaderScan {
       has_form_ = true;
       divides_ = card.find("'RICE_") != card.npos;
     }
-    if ((key == "NAXIS" || key == "ZNAXIS") && number > most_axes)
+    if ((key == "NAXIS" || key == "ZNAXIS") && number > max_axes)
       fail("must be at most 99, got " + std::string(value));
     count(key, number);
     return mended;

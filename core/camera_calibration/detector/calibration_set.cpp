@@ -12,9 +12,9 @@
 namespace dmise {
 namespace {
 
-constexpr int least_side_px = 64;
+constexpr int min_side_px = 64;
 constexpr double longest_bias_s = 1e-3;
-constexpr double least_star_share = 3e-5;  // of pixels that are bright beside a bright one
+constexpr double min_star_share = 3e-5;  // of pixels that are bright beside a bright one
 
 /// The share of pixels that are far above the level and have a bright neighbour, as in stars; hot
 /// pixels have none.
@@ -72,10 +72,9 @@ void CalibrationSet::read(const CalibrationFile& file) {
     if (columns_ == 0) {
       columns_ = raw.columns;
       rows_ = raw.rows;
-      if (std::min(columns_, rows_) < least_side_px)
+      if (std::min(columns_, rows_) < min_side_px)
         throw ConfigError(formatted("%s: NAXIS1: must be at least %d by %d pixels, got %d by %d",
-                                    file.path.c_str(), least_side_px, least_side_px, columns_,
-                                    rows_));
+                                    file.path.c_str(), min_side_px, min_side_px, columns_, rows_));
     }
     if (raw.columns != columns_ || raw.rows != rows_)
       throw ConfigError(
@@ -128,7 +127,7 @@ void CalibrationSet::take_facts(const RawFrame& frame) {
 FrameKind CalibrationSet::guess(const CalibrationFrame& frame, double dark_level) const {
   const auto at = std::size_t(&frame - unsorted_.data());
   if (frame.exposure_s && *frame.exposure_s <= longest_bias_s) return FrameKind::bias;
-  if (star_shares_[at] > least_star_share) return FrameKind::light;
+  if (star_shares_[at] > min_star_share) return FrameKind::light;
   if (frame.level - dark_level > 10 * std::max(frame.noise, 1.0)) return FrameKind::flat;
   return frame.exposure_s ? FrameKind::dark : FrameKind::bias;
 }

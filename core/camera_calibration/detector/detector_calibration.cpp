@@ -52,15 +52,15 @@ void note_bias(const BiasMeasurement& bias, std::vector<std::string>& notes) {
   if (bias.drift_dn > 0)
     notes.push_back(
         formatted("the bias's level wanders by %.2g DN rms from frame to frame", bias.drift_dn));
-  constexpr double least_noise_dn = 0.4;
-  if (bias.frames > 1 && bias.read_noise.value < least_noise_dn)
+  constexpr double min_noise_dn = 0.4;
+  if (bias.frames > 1 && bias.read_noise.value < min_noise_dn)
     notes.push_back(formatted("a read noise of %.2g DN is lost in whole counts: it is not reliable",
                               bias.read_noise.value));
 }
 
 void note_dark(const DarkMeasurement& dark, std::vector<std::string>& notes) {
-  constexpr double most_spread_c = 1.0;
-  if (dark.temperature_spread_c > most_spread_c)
+  constexpr double max_spread_c = 1.0;
+  if (dark.temperature_spread_c > max_spread_c)
     notes.push_back(formatted("darks differ by %.1f K: the dark current is that of their mean",
                               dark.temperature_spread_c));
   if (dark.drift > 0)
@@ -118,9 +118,9 @@ FlatTiles measure_flat_frames(const CalibrationSet& set, Threads& threads,
     out.notes.push_back(formatted("the light of flats is unsteady by %.2g %%%s",
                                   100 * out.linearity.unsteady,
                                   out.linearity.loss_per_dn ? "" : ": linearity is not measured"));
-  constexpr double least_shortfall = 0.01;
+  constexpr double min_shortfall = 0.01;
   const double shortfall = out.transfer.shortfall_per_dn * out.transfer.highest_dn;
-  if (std::abs(shortfall) > least_shortfall)
+  if (std::abs(shortfall) > min_shortfall)
     out.notes.push_back(formatted(
         "the noise of flats is %.1f %% %s than a straight line at %.0f DN, as by charge that "
         "repels charge; the gain is that of faint light",
@@ -206,7 +206,7 @@ struct AdcBits {
   bool seen = false;
 };
 AdcBits adc_bits_of(const CalibrationSet& set) {
-  constexpr std::size_t least_pixels = 5;
+  constexpr std::size_t min_pixels = 5;
   double greatest = 0.0;
   std::size_t pixels = 0;
   for (const FrameKind kind : all_kinds)
@@ -215,7 +215,7 @@ AdcBits adc_bits_of(const CalibrationSet& set) {
       if (frame.greatest == greatest) pixels += frame.greatest_pixels;
     }
   for (int bits = 8; bits <= 16; ++bits)
-    if (greatest == std::exp2(bits) - 1 && pixels >= least_pixels) return {bits, true};
+    if (greatest == std::exp2(bits) - 1 && pixels >= min_pixels) return {bits, true};
   for (int bits = 8; bits < 16; bits += 2)
     if (greatest < std::exp2(bits)) return {bits, false};
   return {};

@@ -7,7 +7,7 @@ namespace dmise {
 namespace {
 
 constexpr double pair_outlier_sigmas = 6.0;
-constexpr double most_light_difference = 0.05;  // of a pair
+constexpr double max_light_difference = 0.05;  // of a pair
 
 /// A tile's values without outliers, at their places; NaN elsewhere.
 struct TileValues {
@@ -153,7 +153,7 @@ FlatTiles measure_flats(const CalibrationSet& set, const std::vector<float>& bia
     if (!before.empty()) {
       const double ratio = total_of(out.tiles[at - 1]) / total_of(out.tiles[at]);
       if (out.flats[at - 1]->exposure_s == flat.exposure_s &&
-          std::abs(ratio - 1) < most_light_difference) {
+          std::abs(ratio - 1) < max_light_difference) {
         const auto difference = difference_of(before, light, ratio, set.columns());
         out.pairs.push_back({at - 1, at,
                              pair_tiles(difference, ratio, out.tiles[at - 1], out.tiles[at],

@@ -118,13 +118,13 @@ FlatResponse measure_response(const CalibrationSet& set, const FlatTiles& flats,
   std::vector<float> halves[2];
   double frames_of[2] = {0.0, 0.0};
   // Flats near the brightest: faint ones add noise of the bias and no light.
-  constexpr double least_light = 0.2;
+  constexpr double min_light = 0.2;
   double brightest = 0.0;
   for (std::size_t f = 0; f < flats.flats.size(); ++f)
     if (saturation.usable[f]) brightest = std::max(brightest, flats.mean_of(f));
   for (std::size_t f = 0; f < flats.flats.size(); ++f) {
     const double mean = flats.mean_of(f);
-    if (!saturation.usable[f] || !(mean > least_light * brightest)) continue;
+    if (!saturation.usable[f] || !(mean > min_light * brightest)) continue;
     auto& half = halves[out.frames % 2];
     ++frames_of[out.frames % 2];
     ++out.frames;

@@ -189,10 +189,10 @@ Linearity measure_linearity(const FlatTiles& flats, const Tiles& tiles,
   }
   MeasuredValue loss = jackknifed(strips, mean_of_sums);
   const double by_lamp = loss_by_lamp(frames, rates / count, out);
-  constexpr double most_unsteady = 0.01;
+  constexpr double max_unsteady = 0.01;
   out.frames = int(used.size());
   loss.sigma = std::hypot(loss.sigma, by_lamp);
-  if (out.unsteady < most_unsteady) out.loss_per_dn = loss;
+  if (out.unsteady < max_unsteady) out.loss_per_dn = loss;
   return out;
 }
 

@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-constexpr double least_strike_sigmas = 8.0;
+constexpr double min_strike_sigmas = 8.0;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ PixelSeries::Result PixelSeries::at(std::size_t pixel) const {
       std::max(0.0, p.squares - w * largest * largest - others * mean_of_others * mean_of_others);
   const double scatter = n > 2 ? rest / (n - 2) : 1.0;
   const double above = (largest - mean_of_others) * std::sqrt(w);
-  if (above > least_strike_sigmas * std::sqrt(std::max(1.0, scatter)))
+  if (above > min_strike_sigmas * std::sqrt(std::max(1.0, scatter)))
     return {mean_of_others, scatter, true};
   return {mean, std::max(0.0, p.squares - weight_ * mean * mean) / (n - 1), false};
 }

@@ -18,17 +18,17 @@ struct Tiles {
   int strips = 0;               // groups of tiles side by side
   std::vector<char> straddles;  // by tile across: it holds two kinds of a mosaic's pixels
 
-  static constexpr int most_strips = 64, least_strips = 8;
+  static constexpr int max_strips = 64, min_strips = 8;
 
   /// `columns` and `rows` at least 64. `split_x`, `split_y`: where another kind of pixels begins.
   Tiles(int columns_, int rows_, int split_x = 0, int split_y_ = 0)
       : columns(columns_),
         rows(rows_),
-        width(std::clamp(columns_ / most_strips, 8, 32)),
+        width(std::clamp(columns_ / max_strips, 8, 32)),
         height(std::clamp(rows_ / 4, 8, 32)),
         across(columns / width),
         down(rows / height),
-        strips(std::min(across, most_strips)),
+        strips(std::min(across, max_strips)),
         straddles(std::size_t(across), 0),
         split_y(split_y_) {
     for (int i = 0; i < across; ++i)

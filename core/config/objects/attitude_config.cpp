@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_rpm = 6000.0;
+constexpr double max_rpm = 6000.0;
 constexpr double noted_deg = 0.1;  // of an attitude between ticks
 
 const Section& inertial_section() {
@@ -26,7 +26,7 @@ const Section& spinning_section() {
       "spinning",
       "A body that turns about an axis of its own.",
       {optional("axis", form::direction(), "Axis in body axes.", "[0, 0, 1]"),
-       required("rate_rpm", form::number(-most_rpm, most_rpm), "Rate [turns per minute]."),
+       required("rate_rpm", form::number(-max_rpm, max_rpm), "Rate [turns per minute]."),
        optional("phase_deg", form::number(-360.0, 360.0),
                 "Rotation of the body at the start of the run [deg].", "0"),
        optional("gcrs_from_body", form::quaternion(),
@@ -41,7 +41,7 @@ const Section& tumbling_section() {
       {required("inertia_kg_m2", form::positive_numbers(3, 1e15),
                 "Moments of inertia about x, y, z [kg m^2], none beyond the sum of the others. "
                 "Only their ratios count."),
-       required("rate_deg_per_s", form::numbers(3, -most_rpm * 6, most_rpm * 6),
+       required("rate_deg_per_s", form::numbers(3, -max_rpm * 6, max_rpm * 6),
                 "Angular velocity about x, y, z at the start of the run [deg/s]."),
        optional("gcrs_from_body", form::quaternion(),
                 "Unit quaternion [w, x, y, z] at the start of the run.", "[1, 0, 0, 0]")}};

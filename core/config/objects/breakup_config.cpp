@@ -64,7 +64,7 @@ BreakupEvent read_event(YamlMap& map, const YamlValue& value) {
   }
   read_bound(map, event);
   const auto least = map.find("least_length_m");
-  const double count = pieces_over(event, event.least_length_m);
+  const double count = pieces_over(event, event.min_length_m);
   if (!(count < max_fragments + 1.0))
     (least ? *least : value)
         .fail("makes " + formatted("%.4g", count) + " fragments, at most " +
@@ -97,8 +97,8 @@ const Section& breakup_section() {
                 "Mass of what hit it [kg]; needed of a collision."),
        optional("relative_speed_m_per_s", form::above(0.0, 1e5),
                 "Speed at which that hit it [m/s]; needed of a collision."),
-       bound<&BreakupEvent::least_length_m>("least_length_m", form::number(1e-3, 1.0),
-                                            "Characteristic length of the smallest pieces [m]."),
+       bound<&BreakupEvent::min_length_m>("least_length_m", form::number(1e-3, 1.0),
+                                          "Characteristic length of the smallest pieces [m]."),
        optional("seed", form::seed(), "Seed of the pieces.", "that of the scenario")}};
   return section;
 }

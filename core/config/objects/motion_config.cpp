@@ -16,7 +16,7 @@ namespace dmise {
 namespace {
 
 constexpr double farthest_m = 1e12;
-constexpr double least_height_m = 0.01;  // of a fixed object above the ellipsoid
+constexpr double min_height_m = 0.01;  // of a fixed object above the ellipsoid
 
 Forms position() { return form::numbers(3, -farthest_m, farthest_m); }
 
@@ -26,7 +26,7 @@ const Section& fixed_section() {
       "A constant place: geodetic over the scenario's ellipsoid, or a vector.",
       {optional("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
        optional("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
-       optional("height_m", form::number(least_height_m, farthest_m),
+       optional("height_m", form::number(min_height_m, farthest_m),
                 "Height above the ellipsoid [m]."),
        optional("itrs_m", position(), "Place in ITRS, which turns with the Earth [m]."),
        optional("gcrs_m", position(), "Place in GCRS, which does not [m].")}};

@@ -246,7 +246,7 @@ void assign_numbers(ObjectsConfig& objects, std::set<std::uint32_t>& taken) {
           source.walker ? source.walker->first_number : source.breakup->first_number;
       first = next;
       next += std::uint32_t(source.walker ? source.walker->satellites()
-                                          : source.breakup->most_fragments());
+                                          : source.breakup->fragment_count());
     }
     if (next > greatest_number)
       throw ConfigError(source.where + ": no catalogue numbers are left for its " +

@@ -106,7 +106,7 @@ void write_breakup(JsonWriter& json, const Breakup& b) {
   json.field("collision", b.event.kind == BreakupKind::collision);
   json.field("spacecraft", b.event.structure == BrokenStructure::spacecraft);
   json.list("event", {b.event.mass_kg, b.event.scale, b.event.projectile_mass_kg,
-                      b.event.relative_speed_m_per_s, b.event.least_length_m});
+                      b.event.relative_speed_m_per_s, b.event.min_length_m});
   if (b.seed) json.field("seed", *b.seed);
   const auto &r = b.parent.position_m, v = b.parent.velocity_m_per_s;
   json.list("teme", {b.epoch.jd1, b.epoch.jd2, r.x, r.y, r.z, v.x, v.y, v.z});

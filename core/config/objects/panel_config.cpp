@@ -6,8 +6,8 @@
 namespace dmise {
 namespace {
 
-constexpr double least_sine_to_normal = 1e-6;  // between a panel's hinge and its normal
-constexpr double farthest_m = 1e5;             // hinge
+constexpr double min_sine_to_normal = 1e-6;  // between a panel's hinge and its normal
+constexpr double farthest_m = 1e5;           // hinge
 
 }  // namespace
 
@@ -46,7 +46,7 @@ HingedPanel read_panel(const YamlValue& value, const GeometryConfig* geometry) {
     if (!geometry) point->fail("needs a geometry", false);
     panel.hinge_m = vector_of<Body>(*point);
   }
-  if (norm(cross(panel.axes.hinge, panel.axes.normal)) < least_sine_to_normal)
+  if (norm(cross(panel.axes.hinge, panel.axes.normal)) < min_sine_to_normal)
     value.fail("hinge and normal must not be parallel", false);
   if (geometry && !faces_normal(*geometry->mesh, panel.axes))
     (normal ? *normal : value).fail("no facet of the panel faces its normal to 45 deg", false);

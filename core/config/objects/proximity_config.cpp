@@ -14,7 +14,7 @@ namespace {
 
 constexpr double farthest_relative_m = 1e6;
 constexpr double fastest_m_per_s = 1e3;
-constexpr double least_distance_m = 1e-3;  // of a forced path from the chief
+constexpr double min_distance_m = 1e-3;  // of a forced path from the chief
 constexpr double longest_wait_s = 3.2e8;
 
 Forms place_rtn() { return form::numbers(3, -farthest_relative_m, farthest_relative_m); }
@@ -88,7 +88,7 @@ Circumnavigation read_circumnavigation(const YamlValue& value) {
 }
 
 /// Least distance of the path from the chief [m].
-double least_distance(const ForcedApproach& motion) {
+double min_distance(const ForcedApproach& motion) {
   const Vec<Rtn> line = motion.to_m - motion.from_m;
   const double length2 = dot(line, line);
   const double part = length2 > 0 ? std::clamp(-dot(motion.from_m, line) / length2, 0.0, 1.0) : 0.0;
@@ -102,13 +102,13 @@ ForcedApproach read_approach(const YamlValue& value) {
                         .speed_m_per_s = map.number("speed_m_per_s")};
   read_bound(map, motion);
   map.done();
-  if (least_distance(motion) < least_distance_m) value.fail("leads through the chief", false);
+  if (min_distance(motion) < min_distance_m) value.fail("leads through the chief", false);
   return motion;
 }
 
 ForcedApproach read_hold(const YamlValue& value) {
   const auto place_m = vector_of<Rtn>(value);
-  if (norm(place_m) < least_distance_m) value.fail("is the place of the chief", false);
+  if (norm(place_m) < min_distance_m) value.fail("is the place of the chief", false);
   return {.from_m = place_m, .to_m = place_m};
 }
 

@@ -7,8 +7,8 @@
 namespace dmise {
 namespace {
 
-constexpr int most_satellites = max_walker_satellites;
-constexpr double least_axis_m = 6.5e6, most_axis_m = 1e9;  // SGP4 has no orbit within the air
+constexpr int max_satellites = max_walker_satellites;
+constexpr double min_axis_m = 6.5e6, max_axis_m = 1e9;  // SGP4 has no orbit within the air
 constexpr double equatorial_radius_m = Ellipsoid{}.equatorial_radius_m;  // of WGS 84
 
 int satellites_of(YamlMap& map, const YamlValue& value) {
@@ -17,8 +17,8 @@ int satellites_of(YamlMap& map, const YamlValue& value) {
   const auto planes = map.require("planes").integer();
   if (total && total->integer() % planes != 0) total->fail("must be a multiple of planes");
   const auto count = total ? total->integer() : per_plane->integer() * planes;
-  if (count > most_satellites)
-    value.fail("must have at most " + std::to_string(most_satellites) + " satellites", false);
+  if (count > max_satellites)
+    value.fail("must have at most " + std::to_string(max_satellites) + " satellites", false);
   return int(count);
 }
 
@@ -30,9 +30,9 @@ double axis_of(YamlMap& map, const YamlValue& value) {
 }
 
 std::vector<Key> orbit_keys() {
-  return {optional("height_m", form::number(least_axis_m - equatorial_radius_m, most_axis_m),
+  return {optional("height_m", form::number(min_axis_m - equatorial_radius_m, max_axis_m),
                    "Semi-major axis less 6378137 m [m]."),
-          optional("semi_major_axis_m", form::number(least_axis_m, most_axis_m),
+          optional("semi_major_axis_m", form::number(min_axis_m, max_axis_m),
                    "Semi-major axis [m], in place of the height."),
           required("inclination_deg", form::number(0.0, 180.0), "Inclination [deg]."),
           optional("raan_deg", form::number(-360.0, 360.0),
@@ -61,12 +61,12 @@ const Section& walker_section() {
       "walker",
       "A constellation of circular orbits T/P/F (Walker 1984): mean elements for SGP4, without "
       "drag.",
-      with_keys({optional("total", form::integer(1, most_satellites),
+      with_keys({optional("total", form::integer(1, max_satellites),
                           "Satellites T; a multiple of the planes."),
-                 optional("per_plane", form::integer(1, most_satellites),
+                 optional("per_plane", form::integer(1, max_satellites),
                           "Satellites in each plane, in place of the total."),
-                 required("planes", form::integer(1, most_satellites), "Planes P."),
-                 optional("phasing", form::integer(0, most_satellites - 1),
+                 required("planes", form::integer(1, max_satellites), "Planes P."),
+                 optional("phasing", form::integer(0, max_satellites - 1),
                           "F, below P: a satellite is F * 360 deg / T ahead of the one in the "
                           "plane to the west.",
                           "0"),
@@ -81,7 +81,7 @@ const Section& walker_section() {
 const Section& train_section() {
   static const Section section{
       "train", "Satellites behind each other in one plane, as after a launch.",
-      with_keys({required("count", form::integer(1, most_satellites), "Satellites."),
+      with_keys({required("count", form::integer(1, max_satellites), "Satellites."),
                  required("spacing_s", form::above(0.0, 86400.0),
                           "Time after which the next one passes the same latitude [s].")},
                 orbit_keys())};

@@ -14,12 +14,12 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_bytes = 4u << 20;
+constexpr std::size_t max_bytes = 4u << 20;
 constexpr double narrowest_m = 1e-18;  // of a box: its ends still differ
 
 Curve curve_beside(const YamlValue& value) {
   const std::string path = value.existing_file();
-  return parse_curve(read_text_file(path, most_bytes), path);
+  return parse_curve(read_text_file(path, max_bytes), path);
 }
 
 Band read_filter(const YamlValue& value) {

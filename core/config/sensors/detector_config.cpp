@@ -68,7 +68,7 @@ Detector read_detector(const YamlValue& value) {
 void check_exposure(const Camera& camera, const YamlValue& exposure_s) {
   const double pixels = double(camera.optics.columns) * camera.optics.rows;
   const double hits = camera.detector.cosmic_rays_per_px_s * pixels * exposure_s.number();
-  if (hits > most_cosmic_hits)
+  if (hits > max_cosmic_hits)
     exposure_s.fail("the camera's cosmic_rays_per_px_s gives more than 1e7 hits");
 }
 

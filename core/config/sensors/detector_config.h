@@ -10,7 +10,7 @@ struct Section;
 /// invalid parameters.
 Detector read_detector(const YamlValue& value);
 
-/// Throws `ConfigError` for an exposure with more than `most_cosmic_hits` expected cosmic-ray hits.
+/// Throws `ConfigError` for an exposure with more than `max_cosmic_hits` expected cosmic-ray hits.
 void check_exposure(const Camera& camera, const YamlValue& exposure_s);
 
 /// The keys of `detector`.

@@ -13,8 +13,8 @@
 namespace dmise {
 namespace {
 
-constexpr double widest_deg = 180.0, widest_px = 1e6, widest_fwhm_px = 200.0, most_nm = 1e5;
-constexpr std::size_t most_radii = 1000;
+constexpr double widest_deg = 180.0, widest_px = 1e6, widest_fwhm_px = 200.0, max_nm = 1e5;
+constexpr std::size_t max_radii = 1000;
 
 Forms widths() { return form::list(form::number(0.3, widest_fwhm_px)); }
 
@@ -32,7 +32,7 @@ const Section& field_zernike_section() {
       "optical "
       "path at each radius. Theta of a term is from the radius outwards.",
       {},
-      required("^([2-9]|[1-5][0-9]|6[0-6])$", form::list(form::number(-most_nm, most_nm)),
+      required("^([2-9]|[1-5][0-9]|6[0-6])$", form::list(form::number(-max_nm, max_nm)),
                "Noll's index of the term, 2 to 66, and its rms at each radius [nm]. Terms 2 and 3 "
                "are the tilt by which light is beside the chief ray.")};
   return section;
@@ -68,7 +68,7 @@ Radii read_radii(YamlMap& map) {
   const Radii radii{degrees ? FieldRadius::angle_deg : FieldRadius::distance_px,
                     rising_numbers_in(list)};
   if (radii.at.empty()) list.fail("needs a radius", false);
-  if (radii.at.size() > most_radii) list.fail("must have at most 1000 radii", false);
+  if (radii.at.size() > max_radii) list.fail("must have at most 1000 radii", false);
   return radii;
 }
 

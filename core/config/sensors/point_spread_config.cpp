@@ -75,10 +75,10 @@ void read_measured(YamlMap& map, Optics& optics, PointSpread& s) {
     if (const auto other = map.find(key)) other->fail("can't stand beside psf: file", false);
   s.measured = read_psf_file(*file, optics);
   optics.psf_fwhm_px = s.measured->fwhm_px();
-  constexpr int most_kernels = 9, most_wavelengths = 16;
-  s.grid_columns = std::min(s.measured->grid_columns(), most_kernels);
-  s.grid_rows = std::min(s.measured->grid_rows(), most_kernels);
-  s.wavelengths = std::min(s.measured->wavelengths(), most_wavelengths);
+  constexpr int max_kernels = 9, max_wavelengths = 16;
+  s.grid_columns = std::min(s.measured->grid_columns(), max_kernels);
+  s.grid_rows = std::min(s.measured->grid_rows(), max_kernels);
+  s.wavelengths = std::min(s.measured->wavelengths(), max_wavelengths);
   if (!s.measured->with_pixel()) return;
   if (const auto v = map.find("resampling"); v && v->choice() == "area")
     v->fail("images with the pixel in them are read at the pixels' middles: bilinear");
@@ -125,7 +125,7 @@ std::vector<Key> point_spread_keys() {
                std::to_string(PointSpread().wavelengths)),
       optional("most_screens", form::integer(1, 1000),
                "Most phase screens of a short exposure through turbulence.",
-               std::to_string(PointSpread().most_screens)),
+               std::to_string(PointSpread().max_screens)),
       optional("oversampling", form::integer(1, 16),
                "Cells per pixel and axis of the kernel. Chosen from the pupil if not given."),
       optional("support_px", form::integer(2, 256),
@@ -198,7 +198,7 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
   if (s.field.any() && s.grid_columns * s.grid_rows == 1)
     map.value().fail("field_nm needs a psf_grid of more than one kernel", false);
   if (const auto v = of_pupil("wavelengths")) s.wavelengths = int(v->integer());
-  if (const auto v = of_pupil("most_screens")) s.most_screens = int(v->integer());
+  if (const auto v = of_pupil("most_screens")) s.max_screens = int(v->integer());
   if (const auto v = map.find("oversampling")) s.oversampling = int(v->integer());
   if (const auto v = map.find("support_px")) s.support_px = int(v->integer());
   using Method = PointSpread::Method;
@@ -224,7 +224,7 @@ void write_point_spread_json(JsonWriter& json, const PointSpread& s) {
   json.end_array();
   json.field("coma_m", s.field.coma_m).field("astigmatism_m", s.field.astigmatism_m);
   json.field("curvature_m", s.field.curvature_m).field("grid_columns", s.grid_columns);
-  json.field("grid_rows", s.grid_rows).field("most_screens", s.most_screens);
+  json.field("grid_rows", s.grid_rows).field("most_screens", s.max_screens);
   if (s.measured) json.field("measured", s.measured->digest());
   json.end_object();
 }

@@ -10,8 +10,8 @@
 namespace dmise {
 namespace {
 
-constexpr double least_sine_to_up = 1e-6;  // between boresight and up
-constexpr double most_offset_deg = 80.0;   // of a target's image from the boresight
+constexpr double min_sine_to_up = 1e-6;  // between boresight and up
+constexpr double max_offset_deg = 80.0;  // of a target's image from the boresight
 
 constexpr const char* tracking_names[] = {"fixed", "sidereal", "target", "moving"};
 
@@ -93,8 +93,8 @@ const Section& cued_section() {
                 "[-270, 270]"),
        bound<&CueSettings::settle_s>("settle_s", form::number(0.0, 3600.0),
                                      "Time to settle after a slew [s]."),
-       bound<&CueSettings::least_elevation_deg>("least_elevation_deg", form::number(0.0, 89.0),
-                                                "Lowest elevation that it observes at [deg]."),
+       bound<&CueSettings::min_elevation_deg>("least_elevation_deg", form::number(0.0, 89.0),
+                                              "Lowest elevation that it observes at [deg]."),
        bound<&CueSettings::greatest_elevation_deg>(
            "greatest_elevation_deg", form::number(0.0, 90.0),
            "Highest elevation that it observes at [deg], above the lowest."),
@@ -108,8 +108,8 @@ const Section& cued_section() {
                                          "Expected error of a detection along each axis [arcsec]."),
        bound<&CueSettings::limiting_magnitude>("limiting_magnitude", form::number(-30.0, 40.0),
                                                "Faintest magnitude that it detects."),
-       bound<&CueSettings::least_gain_nats>("least_gain_nats", form::number(0.0, 1000.0),
-                                            "Least information that a task must promise [nats].")}};
+       bound<&CueSettings::min_gain_nats>("least_gain_nats", form::number(0.0, 1000.0),
+                                          "Least information that a task must promise [nats].")}};
   return section;
 }
 
@@ -140,7 +140,7 @@ PointBody read_body(const YamlValue& value) {
   const Vec<Body> z = direction_of<Body>(*boresight);
   const Vec<Body> least = std::abs(z.z) < 0.9 ? Vec<Body>{0, 0, 1} : Vec<Body>{0, 1, 0};
   const Vec<Body> upwards = up ? direction_of<Body>(*up) : least;
-  if (norm(cross(z, upwards)) < least_sine_to_up) up->fail("must not be along boresight", false);
+  if (norm(cross(z, upwards)) < min_sine_to_up) up->fail("must not be along boresight", false);
   const Vec<Body> x = unit(cross(z, upwards)), y = cross(z, x);
   PointBody body;
   body.body_from_camera.m = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
@@ -160,7 +160,7 @@ PointEnu read_enu(const YamlValue& value, const std::optional<Site>& origin) {
     return enu;
   }
   enu.look = direction_of<Enu>(*look);
-  if (norm(cross(enu.look, enu.up)) >= least_sine_to_up) return enu;
+  if (norm(cross(enu.look, enu.up)) >= min_sine_to_up) return enu;
   if (up) up->fail("must not be along look", false);
   enu.up = {0, 1, 0};  // along the vertical north is up
   return enu;
@@ -211,8 +211,8 @@ PointCued read_cued(const YamlValue& value) {
     if (!(limits[0] < limits[1])) range->fail("must rise");
     c.azimuth_range_deg = {limits[0], limits[1]};
   }
-  if (c.greatest_elevation_deg < c.least_elevation_deg)
-    map.require("greatest_elevation_deg").number(Bounds::between(c.least_elevation_deg, 90.0));
+  if (c.greatest_elevation_deg < c.min_elevation_deg)
+    map.require("greatest_elevation_deg").number(Bounds::between(c.min_elevation_deg, 90.0));
   map.done();
   return cued;
 }
@@ -253,7 +253,7 @@ const Section& pointing_section() {
        optional("place", form::choice({"apparent", "geometric"}),
                 "Whether the target's apparent direction is pointed at, or the straight line.",
                 "apparent"),
-       optional("offset_deg", form::numbers(2, -most_offset_deg, most_offset_deg),
+       optional("offset_deg", form::numbers(2, -max_offset_deg, max_offset_deg),
                 "Place of the target's image from the boresight [deg], along columns and rows.",
                 "[0, 0]"),
        optional("body", form::map(body_section), "Fixed to the body of the platform."),

@@ -61,11 +61,11 @@ struct PointingWriter {
     }
     if (c.greatest_elevation_deg < 90)
       json.field("greatest_elevation_deg", c.greatest_elevation_deg);
-    json.field("settle_s", c.settle_s).field("least_elevation_deg", c.least_elevation_deg);
+    json.field("settle_s", c.settle_s).field("least_elevation_deg", c.min_elevation_deg);
     json.field("sun_exclusion_deg", c.sun_exclusion_deg);
     json.field("moon_exclusion_deg", c.moon_exclusion_deg).field("exposures", c.exposures);
     json.field("sigma_arcsec", c.sigma_arcsec).field("limiting_magnitude", c.limiting_magnitude);
-    json.field("least_gain_nats", c.least_gain_nats).end_object().end_object();
+    json.field("least_gain_nats", c.min_gain_nats).end_object().end_object();
   }
 };
 

@@ -15,9 +15,9 @@
 namespace dmise {
 namespace {
 
-constexpr int longest_side = 1024, most_planes = 512;
-constexpr double most_values = 64e6;
-constexpr double least_samples_per_px = 0.5, most_samples_per_px = 64.0;
+constexpr int longest_side = 1024, max_planes = 512;
+constexpr double max_values = 64e6;
+constexpr double min_samples_per_px = 0.5, max_samples_per_px = 64.0;
 
 /// A card's value where it is a positive number.
 std::optional<double> positive(const FitsValues& cards, const std::string& key) {
@@ -82,17 +82,17 @@ std::shared_ptr<const MeasuredPsf> load(const std::string& file, std::optional<d
   const std::string bytes = read_fits_file(file);
   FitsImage image(bytes, file);
   if (image.columns() > longest_side || image.rows() > longest_side ||
-      image.planes() > most_planes ||
-      double(image.columns()) * image.rows() * image.planes() > most_values)
+      image.planes() > max_planes ||
+      double(image.columns()) * image.rows() * image.planes() > max_values)
     throw Error(formatted(
         "must be at most %d x %d and %d planes, %g values in all, got %d x %d x %d", longest_side,
-        longest_side, most_planes, most_values, image.columns(), image.rows(), image.planes()));
+        longest_side, max_planes, max_values, image.columns(), image.rows(), image.planes()));
   const auto per_px = samples ? samples : stated_samples_per_px(image.values(), optics);
   if (!per_px)
     throw Error("needs samples_per_px: the file has no card OVERSAMP, PSF_SAMP or PIXELSCL");
-  if (*per_px < least_samples_per_px || *per_px > most_samples_per_px)
+  if (*per_px < min_samples_per_px || *per_px > max_samples_per_px)
     throw Error(formatted("its header says %g samples a pixel; must be in %g..%g", *per_px,
-                          least_samples_per_px, most_samples_per_px));
+                          min_samples_per_px, max_samples_per_px));
   const std::string digest =
       formatted("%s %.17g %d", sha256_hex(bytes).c_str(), *per_px, int(with_pixel));
   return std::make_shared<const MeasuredPsf>(image.columns(), image.rows(), *per_px, with_pixel,
@@ -121,7 +121,7 @@ const Section& psf_file_section() {
       "ray. Planes of a cube are of places of the frame (cards DET_YX0, ..: `(y, x)` in pixels), "
       "of wavelengths (WAVELN00, .. in metres), or of both.",
       {required("path", form::text(), "The file, beside this one."),
-       optional("samples_per_px", form::number(least_samples_per_px, most_samples_per_px),
+       optional("samples_per_px", form::number(min_samples_per_px, max_samples_per_px),
                 "Pixels of an image in a pixel of the camera. Without it cards tell: OVERSAMP, "
                 "PSF_SAMP (its inverse) or PIXELSCL [arcsec]."),
        optional("with_pixel", form::flag(),

@@ -43,7 +43,7 @@ SiteConfig read_site(const YamlValue& value) {
 }
 
 /// A trail is one parabola: over 10 deg it is accurate to 1e-4 of a focal length.
-constexpr double most_turn_deg = 10.0;
+constexpr double max_turn_deg = 10.0;
 
 /// Airmass of a camera at fixed azimuth and elevation; 1 for one that follows the sky.
 double airmass_of(const Pointing& pointing) {
@@ -94,7 +94,7 @@ void check_rows(const YamlValue& exposure, const SensorConfig& sensor, double ra
   const double until_s = sensor.exposure_s + delay_s;
   if (sim_seconds(sensor.first_exposure_s + until_s) > duration)
     exposure.fail("the first exposure of the last row ends after the run does");
-  if (rate_deg_per_s * until_s > most_turn_deg)
+  if (rate_deg_per_s * until_s > max_turn_deg)
     exposure.fail("the camera must turn by no more than 10 deg until the last row is exposed");
 }
 
@@ -111,7 +111,7 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
       throw ConfigError(
           "effects.turbulence: short takes one screen for each r0 / wind of the exposure, and "
           "there are more than optics.most_screens, " +
-          std::to_string(camera.optics.spread.most_screens) + ": raise it or take long");
+          std::to_string(camera.optics.spread.max_screens) + ": raise it or take long");
     if (plan.method == PointSpread::Method::direct && sensor.effects.drawn_by_opengl())
       throw ConfigError(
           "effects.evaluator: opengl can't draw the point sources of this camera, whose "
@@ -325,7 +325,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
     drift.run_s = duration.seconds();
   const double rate_deg_per_s =
       turn_rate_deg_per_s(sensor.pointing) + sensor.instrument.drift_size_rad_per_s() / deg;
-  if (rate_deg_per_s * sensor.exposure_s > most_turn_deg)
+  if (rate_deg_per_s * sensor.exposure_s > max_turn_deg)
     exposure.fail("the camera must turn by no more than 10 deg within an exposure");
   if (const auto seeing = map.find("seeing")) {
     if (sensor.camera.optics.spread.model != PointSpread::Model::diffraction)

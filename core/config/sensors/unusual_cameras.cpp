@@ -13,7 +13,7 @@ namespace {
 /// Usual range of a length of a telescope.
 struct UsualLength {
   const char* key;
-  double least_m, most_m;
+  double min_m, max_m;
 };
 // Pixels from 0.5 um (telephones) to 0.2 mm; focal lengths above 60 m occur only in
 // interferometers; apertures up to 39 m (ELT).
@@ -30,9 +30,9 @@ std::string text_of(double x) { return formatted("%.4g", x); }
 
 std::string unusual(double value_m, const UsualLength& length) {
   std::string text =
-      "is unusual, " + text_of(length.least_m) + " to " + text_of(length.most_m) + " are usual";
+      "is unusual, " + text_of(length.min_m) + " to " + text_of(length.max_m) + " are usual";
   for (const Unit& unit : units)
-    if (const double m = value_m * unit.m; m >= length.least_m && m <= length.most_m)
+    if (const double m = value_m * unit.m; m >= length.min_m && m <= length.max_m)
       return text + " (in " + unit.name + "? that is " + text_of(m) + ")";
   return text;
 }
@@ -50,13 +50,13 @@ std::vector<std::string> unusual_camera_values(const YamlValue& camera, const Ca
   for (const auto& length : usual)
     if (const auto at = optics.find(length.key)) {
       const double value_m = at->number();
-      if (value_m < length.least_m || value_m > length.most_m)
+      if (value_m < length.min_m || value_m > length.max_m)
         lines.push_back(at->complaint(unusual(value_m, length)));
     }
   if (!lines.empty()) return lines;  // derived values add nothing
   const Optics& o = read.optics;
-  constexpr double most_f_number = 100.0, widest_m = 1.0, finest_arcsec = 0.005, coarsest_deg = 3.0;
-  if (o.f_number() > most_f_number)
+  constexpr double max_f_number = 100.0, widest_m = 1.0, finest_arcsec = 0.005, coarsest_deg = 3.0;
+  if (o.f_number() > max_f_number)
     warn(optics, "aperture_m",
          "makes f/" + text_of(o.f_number()) + " with this focal length, which is unusual");
   if (o.columns * o.pixel_pitch_m > widest_m)
@@ -66,8 +66,8 @@ std::vector<std::string> unusual_camera_values(const YamlValue& camera, const Ca
     warn(optics, "pixel_pitch_m",
          "makes pixels of " + text_of(o.pixel_angle_rad() / arcsec) + " arcsec, which is unusual");
   const Detector& d = read.detector;
-  constexpr double well_ratio = 100.0, least_well_e = 100.0, most_well_e = 1e8;
-  if (d.full_well_e < least_well_e || d.full_well_e > most_well_e)
+  constexpr double well_ratio = 100.0, min_well_e = 100.0, max_well_e = 1e8;
+  if (d.full_well_e < min_well_e || d.full_well_e > max_well_e)
     warn(detector, "full_well_e", "is unusual, 1000 to 1e7 are usual");
   const double range_e = d.gain_e_per_dn * std::exp2(d.adc_bits);
   if (range_e > well_ratio * d.full_well_e || range_e < d.full_well_e / well_ratio)

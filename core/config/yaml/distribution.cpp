@@ -14,10 +14,10 @@
 namespace dmise {
 namespace {
 
-constexpr double far_sigmas = 5.0;       // where a normal without ends is tried
-constexpr double least_share = 0.01;     // of a normal between min and max
-constexpr double most_integer = 0x1p53;  // exact in double
-constexpr std::uint32_t most_draws = 10'000;
+constexpr double far_sigmas = 5.0;      // where a normal without ends is tried
+constexpr double min_share = 0.01;      // of a normal between min and max
+constexpr double max_integer = 0x1p53;  // exact in double
+constexpr std::uint32_t max_draws = 10'000;
 const std::vector<std::string> of_lists{"uniform", "log_uniform", "integers", "one_of"};
 
 /// Uniform in (0, 1) with 53 bits.
@@ -94,8 +94,7 @@ Distribution::Distribution(const YamlValue& value) : value_(value) {
     least_ = least ? least->number() : -std::numeric_limits<double>::infinity();
     most_ = most ? most->number() : std::numeric_limits<double>::infinity();
     if (most && !(least_ < most_)) most->fail("must be > min");
-    if (share_below((most_ - mean_) / sigma_) - share_below((least_ - mean_) / sigma_) <
-        least_share)
+    if (share_below((most_ - mean_) / sigma_) - share_below((least_ - mean_) / sigma_) < min_share)
       range.fail("has less than 1 % between min and max", false);
     return;
   }
@@ -111,7 +110,7 @@ Distribution::Distribution(const YamlValue& value) : value_(value) {
     }
   } else if (name_ == "integers") {
     kind_ = Kind::integers;
-    const std::int64_t limit = std::int64_t(most_integer);
+    const std::int64_t limit = std::int64_t(max_integer);
     least_ = double(ends[0].integer(-limit, limit));
     most_ = double(ends[1].integer(-limit, limit));
   } else {
@@ -164,7 +163,7 @@ Distribution::Value Distribution::at(double share) const {
 
 Distribution::Value Distribution::draw(const RngKey& key) const {
   if (kind_ != Kind::normal) return at(uniform_53(key, 0));
-  for (std::uint32_t draw = 0; draw < most_draws; ++draw) {
+  for (std::uint32_t draw = 0; draw < max_draws; ++draw) {
     const double x = mean_ + sigma_ * double(normal_of(rng_word(key, 0, draw)));
     if (x >= least_ && x <= most_) return {.scalar = scalar(x)};
   }

@@ -89,12 +89,12 @@ std::string YamlValue::place() const {
 }
 
 std::string YamlValue::complaint(const std::string& reason, bool show_value) const {
-  constexpr std::size_t most_shown_bytes = 200;
+  constexpr std::size_t max_shown_bytes = 200;
   std::string text = place() + ": " + reason;
   if (show_value) {
     text += ", got ";
     if (node_.IsScalar()) {
-      text += node_.Scalar().empty() ? "''" : printable(node_.Scalar(), most_shown_bytes);
+      text += node_.Scalar().empty() ? "''" : printable(node_.Scalar(), max_shown_bytes);
     } else {
       text += node_.IsMap() ? "a mapping" : node_.IsSequence() ? "a list" : "nothing";
     }

@@ -13,15 +13,15 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_harmonics = 16;
+constexpr std::size_t max_harmonics = 16;
 constexpr double shortest_fwhms = 1.75;  // of a period or a part of one: the PSF leaves 0.3 of it
-constexpr double most_cycles = 160.0;    // on the line, of the highest harmonic: bounds the time
+constexpr double max_cycles = 160.0;     // on the line, of the highest harmonic: bounds the time
 constexpr double steps = 4.0;            // of the frequency, a cycle of the highest harmonic more
 constexpr double worth_more = 6.0;       // of chi2, than a bend of the light
 constexpr double least_for_longer =
     15.0;  // of the score: a multiple of a period has more harmonics
-constexpr double least_share_for_longer = 0.02;  // and so much of it more
-constexpr int phases = 720;                      // of a period, at which its light is looked at
+constexpr double min_share_for_longer = 0.02;  // and so much of it more
+constexpr int phases = 720;                    // of a period, at which its light is looked at
 
 /// Light along the line, in units in which the fit is linear, and its products with all others.
 struct Column {
@@ -118,11 +118,11 @@ void add_harmonics(const StreakLight& light, double frequency, std::size_t count
 }
 
 double highest_frequency(const StreakLight& light) {
-  return std::min(1 / (shortest_fwhms * light.fwhm_px), most_cycles / light.length_px);
+  return std::min(1 / (shortest_fwhms * light.fwhm_px), max_cycles / light.length_px);
 }
 
 std::size_t harmonics_at(const StreakLight& light, double frequency) {
-  return std::min(most_harmonics, std::size_t(highest_frequency(light) / frequency));
+  return std::min(max_harmonics, std::size_t(highest_frequency(light) / frequency));
 }
 
 /// A frequency, its harmonics and how good they are.
@@ -158,19 +158,19 @@ class Periodogram {
   }
 
   Candidate best() const {
-    constexpr double least_share = 0.85;  // of the gain of free light, that repeats
+    constexpr double min_share = 0.85;  // of the gain of free light, that repeats
     Candidate out = highest(1 / light_.length_px);
     // Less than two periods are free light: what repeats explains nearly as much.
     if (const double two = 2 / light_.length_px; out.frequency < two) {
       const Candidate repeated = highest(two);
-      if (repeated.gain > least_share * out.gain) out = repeated;
+      if (repeated.gain > min_share * out.gain) out = repeated;
     }
     // A multiple of the frequency explains it as well where harmonics between have only noise.
     for (std::size_t m = 6; m >= 2; --m) {
       if (out.harmonics < m) continue;
       const Candidate shorter =
           refined(out.frequency * double(m), out.harmonics / m, 1 / light_.length_px);
-      if (shorter.score > out.score - least_for_longer - least_share_for_longer * out.score)
+      if (shorter.score > out.score - least_for_longer - min_share_for_longer * out.score)
         return shorter;
     }
     return out;
@@ -273,7 +273,7 @@ double Periodogram::false_alarm(const Candidate& c) const {
   // Of times that are spread evenly over the line.
   const double time_px = light_.length_px * std::sqrt(4 * pi / 12);
   double sum = 0.0;
-  for (std::size_t h = 1; h <= most_harmonics; ++h) {
+  for (std::size_t h = 1; h <= max_harmonics; ++h) {
     const double range = highest_frequency(light_) / double(h) - 1 / light_.length_px;
     if (!(range > 0)) break;
     const double z = (c.score + 2 * double(h) * price()) / 2;
@@ -373,7 +373,7 @@ std::optional<FoundPeriod> light_period(const StreakLight& light) {
   LightPeriod& out = found.period;
   out.harmonics = std::uint32_t(best.harmonics);
   out.false_alarm = periodogram.false_alarm(best);
-  if (out.false_alarm > most_false_alarm || !periodogram.beats_bend(best)) return std::nullopt;
+  if (out.false_alarm > max_false_alarm || !periodogram.beats_bend(best)) return std::nullopt;
   const auto fit = periodogram.solution(best);
   if (!fit || !(fit->value[even_light] > 0)) return std::nullopt;
   const Wave wave(std::span(fit->value).subspan(others), best.frequency);

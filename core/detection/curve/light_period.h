@@ -14,14 +14,14 @@ struct FoundPeriod {
 };
 
 /// Largest probability of a false alarm of a period that is stated.
-inline constexpr double most_false_alarm = 1e-3;
+inline constexpr double max_false_alarm = 1e-3;
 
 /// Finds the period that explains the light of a streak better than even light that changes evenly
 /// along it: a generalised periodogram of harmonics (Schwarzenberg-Czerny 1996, ApJ 460, L107; with
 /// the constant and the slope fitted at each frequency as by Zechmeister & Kuerster 2009, A&A 496,
 /// 577), by least squares over the pixels, so that the blur of the PSF is part of the model. The
 /// number of harmonics and the period together have the best Bayesian information criterion. Empty
-/// if noise has one as good with more than `most_false_alarm` (Baluev 2009, MNRAS 395, 1541), or if
+/// if noise has one as good with more than `max_false_alarm` (Baluev 2009, MNRAS 395, 1541), or if
 /// fewer than two flashes or one whole sine are on the line, which show no period.
 std::optional<FoundPeriod> light_period(const StreakLight& light);
 

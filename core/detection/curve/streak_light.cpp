@@ -10,9 +10,9 @@
 namespace dmise {
 namespace {
 
-constexpr double least_fwhms = 4.0;       // of the line
-constexpr std::size_t most_pieces = 800;  // of longer lines they are longer
-constexpr double reach_sigmas = 5.0;      // along the line, of the light of a piece
+constexpr double min_fwhms = 4.0;        // of the line
+constexpr std::size_t max_pieces = 800;  // of longer lines they are longer
+constexpr double reach_sigmas = 5.0;     // along the line, of the light of a piece
 constexpr double across_sigmas = 3.0, across_px = 1.0;
 constexpr double least_seen = 0.1;  // of the weight that the best measured bin has
 constexpr double weak = 1e-6;       // of it, of the prior that keeps equations solvable
@@ -198,7 +198,7 @@ double chi2_of(const std::vector<PiecePixel>& pixels, const std::vector<double>&
 StreakLight divided(const Trail& line, double sigma_px) {
   const double fwhm_px = fwhm_per_sigma * sigma_px;
   const double bins =
-      std::clamp(std::round(line.length_px / fwhm_px), 1.0, double(most_pieces / pieces_of_bin));
+      std::clamp(std::round(line.length_px / fwhm_px), 1.0, double(max_pieces / pieces_of_bin));
   const auto pieces = std::size_t(bins) * pieces_of_bin;
   const double piece_px = line.length_px / double(pieces);
   const auto reach = std::size_t(2 * (reach_sigmas * sigma_px / piece_px + 1)) + 2;
@@ -219,8 +219,7 @@ std::optional<StreakLight> streak_light(const Scene& scene, const Source& source
   const PixelPosition middle{line.x_px, line.y_px};
   const Psf psf = broad ? Psf(source.broad_sigma_px) : scene.psf.at(middle);
   const double sigma_px = broad ? source.broad_sigma_px : scene.psf.sigma_at(middle);
-  if (!source.streak || line.length_px < least_fwhms * fwhm_per_sigma * sigma_px)
-    return std::nullopt;
+  if (!source.streak || line.length_px < min_fwhms * fwhm_per_sigma * sigma_px) return std::nullopt;
   StreakLight light = divided(line, sigma_px);
   const auto pixels = pixels_of(scene, line, light, psf, sigma_px);
   if (pixels.size() < 2 * light.pieces) return std::nullopt;
@@ -285,7 +284,7 @@ void set_light(const StreakLight& light, Source& source) {
 }
 
 Source aligned(const Scene& scene, Source source) {
-  constexpr double step_px = 0.15, most_px = 0.6;
+  constexpr double step_px = 0.15, max_px = 0.6;
   constexpr int rounds = 2;
   const auto moved = [&](const Source& from, double offset_px, double end_px) {
     Source out = from;
@@ -307,7 +306,7 @@ Source aligned(const Scene& scene, Source source) {
     const double before = chi2(by(-step_px)), here = chi2(source), after = chi2(by(step_px));
     const double bend = before - 2 * here + after;
     if (!(bend > 0) || !std::isfinite(bend)) continue;
-    const double px = std::clamp(0.5 * step_px * (before - after) / bend, -most_px, most_px);
+    const double px = std::clamp(0.5 * step_px * (before - after) / bend, -max_px, max_px);
     Source better = by(px);
     if (chi2(better) < here) source = std::move(better);
   }

@@ -52,10 +52,10 @@ bool CatalogueSky::can_expect(const UnknownFacts& unknown) {
 }
 
 std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int columns, int rows,
-                                                 double least_signal_e, double beyond_px) const {
+                                                 double min_signal_e, double beyond_px) const {
   if (!can_expect(header.unknown)) return {};
   const StarTable& stars = map_->stars;
-  const ExpectedStars expected(header, columns, rows, least_signal_e, beyond_px);
+  const ExpectedStars expected(header, columns, rows, min_signal_e, beyond_px);
   const Vec<Gcrs> axis = wcs_direction(header.wcs, {(columns - 1) / 2.0, (rows - 1) / 2.0});
   const Tt tt = Clock(parse_utc(header.middle_utc)).tt({});
   const double years = 2000.0 + julian_years_since_j2000(tt) - stars.epoch_jyear;

@@ -23,11 +23,11 @@ class CatalogueSky {
   /// Whether enough is known of a frame to expect stars at their places with their light.
   static bool can_expect(const UnknownFacts& unknown);
 
-  /// Returns the stars of at least `least_signal_e` in a frame and up to `beyond_px` beside it, by
+  /// Returns the stars of at least `min_signal_e` in a frame and up to `beyond_px` beside it, by
   /// the header's WCS, zero point, band and air, without noise and clouds. In the catalogue's
   /// order. None unless `can_expect`.
   std::vector<ExpectedStar> stars_in(const FrameHeader& header, int columns, int rows,
-                                     double least_signal_e, double beyond_px = 20.0) const;
+                                     double min_signal_e, double beyond_px = 20.0) const;
 
  private:
   std::shared_ptr<const StarMap> map_;

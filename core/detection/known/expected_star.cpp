@@ -18,12 +18,12 @@ constexpr double sunlike_bv = 0.65;  // of what the zero point is for
 
 }  // namespace
 
-ExpectedStars::ExpectedStars(const FrameHeader& header, int columns, int rows,
-                             double least_signal_e, double beyond_px)
+ExpectedStars::ExpectedStars(const FrameHeader& header, int columns, int rows, double min_signal_e,
+                             double beyond_px)
     : header_(header),
       columns_(columns),
       rows_(rows),
-      least_signal_e_(least_signal_e),
+      min_signal_e_(min_signal_e),
       beyond_px_(beyond_px),
       light_(header.band),
       sunlike_(light_.photons_per_s_m2(0.0, sunlike_bv)),
@@ -31,9 +31,9 @@ ExpectedStars::ExpectedStars(const FrameHeader& header, int columns, int rows,
       refraction_(refraction_of(header)) {}
 
 double ExpectedStars::faintest_v_mag() const {
-  const double brightest_colour = light_.most_photons_per_s_m2(0.0) / sunlike_;
+  const double brightest_colour = light_.max_photons_per_s_m2(0.0) / sunlike_;
   return header_.v_solar_zero_point_mag() -
-         2.5 * std::log10(least_signal_e_ / (header_.exposure_s * brightest_colour));
+         2.5 * std::log10(min_signal_e_ / (header_.exposure_s * brightest_colour));
 }
 
 std::optional<ExpectedStar> ExpectedStars::at(const Vec<Gcrs>& direction, double v_mag,
@@ -49,7 +49,7 @@ std::optional<ExpectedStar> ExpectedStars::at(const Vec<Gcrs>& direction, double
   const double signal_e =
       header_.exposure_s * of_colour *
       std::pow(10.0, 0.4 * (header_.v_solar_zero_point_mag() - extinction_mag - v_mag));
-  if (!(signal_e >= least_signal_e_)) return std::nullopt;
+  if (!(signal_e >= min_signal_e_)) return std::nullopt;
   const auto place = wcs_pixel(header_.wcs, direction);
   if (!place || !(place->x_px > -beyond_px_ && place->y_px > -beyond_px_ &&
                   place->x_px < columns_ - 1 + beyond_px_ && place->y_px < rows_ - 1 + beyond_px_))

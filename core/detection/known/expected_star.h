@@ -25,9 +25,9 @@ struct ExpectedStar {
 /// and air, without noise and clouds.
 class ExpectedStars {
  public:
-  /// Of at least `least_signal_e`, in the frame and up to `beyond_px` beside it. `header` must
+  /// Of at least `min_signal_e`, in the frame and up to `beyond_px` beside it. `header` must
   /// outlive it.
-  ExpectedStars(const FrameHeader& header, int columns, int rows, double least_signal_e,
+  ExpectedStars(const FrameHeader& header, int columns, int rows, double min_signal_e,
                 double beyond_px);
 
   /// V of the faintest sources that may have as much light.
@@ -41,7 +41,7 @@ class ExpectedStars {
  private:
   const FrameHeader& header_;
   int columns_, rows_;
-  double least_signal_e_, beyond_px_;
+  double min_signal_e_, beyond_px_;
   StarLight light_;
   double sunlike_;  // light of a star of V = 0 and the colour of what the zero point is for
   Vec<Gcrs> zenith_;

@@ -23,7 +23,7 @@ bool KnownStars::would_know(PixelPosition place, double flux_e) const {
 bool KnownStars::may_be_at(PixelPosition place, double within_px, double flux_e) const {
   auto star = std::ranges::lower_bound(stars_, place.y_px - within_px, {}, row_of);
   for (; star != stars_.end() && star->place.y_px <= place.y_px + within_px; ++star)
-    if (star->most_e >= flux_e &&
+    if (star->max_e >= flux_e &&
         std::hypot(star->place.x_px - place.x_px, star->place.y_px - place.y_px) <= within_px)
       return true;
   return false;

@@ -14,7 +14,7 @@ class KnownStars {
   /// A star where the frame has it, and the most light that may come from it.
   struct Star {
     PixelPosition place;
-    double most_e = 0.0;
+    double max_e = 0.0;
   };
 
   /// `lit`: the pixels with the stars' light. `sky` and `header` must outlive it.

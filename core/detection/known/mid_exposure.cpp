@@ -7,7 +7,7 @@ namespace dmise {
 namespace {
 
 constexpr double earth_gm_m3_per_s2 = 3.986004415e14;
-constexpr double least_height_m = 100e3, largest_radius_m = 1e9;
+constexpr double min_height_m = 100e3, largest_radius_m = 1e9;
 
 /// Lines of sight at start and end of the exposure, from the sensor's positions.
 struct Sight {
@@ -49,7 +49,7 @@ std::optional<OnOrbit> on_an_orbit(const FrameHeader& header, const Sight& start
     return places_at(start, end, radius_m, header.exposure_s, radial_share);
   };
   // The angle grows with the radius, the orbit's decreases.
-  double low_m = norm(header.sensor_position_m) + least_height_m, high_m = largest_radius_m;
+  double low_m = norm(header.sensor_position_m) + min_height_m, high_m = largest_radius_m;
   if (!(at(low_m).excess_rad < 0 && at(high_m).excess_rad > 0)) return std::nullopt;
   for (int step = 0; step < 60; ++step) {
     const double middle_m = std::sqrt(low_m * high_m);

@@ -9,12 +9,12 @@ namespace dmise {
 namespace {
 
 constexpr double earth_radius_m = 6371e3;
-constexpr double least_range_m = 100e3;  // keeps ranges finite for high sites
+constexpr double min_range_m = 100e3;  // keeps ranges finite for high sites
 
 double range_m(double from_centre_m, double sine_of_elevation, double altitude_m) {
   const double along = from_centre_m * sine_of_elevation, radius_m = earth_radius_m + altitude_m;
   const double square = along * along - from_centre_m * from_centre_m + radius_m * radius_m;
-  return std::max(std::sqrt(std::max(square, 0.0)) - along, least_range_m);
+  return std::max(std::sqrt(std::max(square, 0.0)) - along, min_range_m);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ ApertureLight::ApertureLight(double obscuration) {
     const double amplitude = (jinc(v) - share * jinc(obscuration * v)) / open;
     return pi / 4 * open * amplitude * amplitude;
   };
-  const auto size = std::size_t(most_radius / step) + 3;
+  const auto size = std::size_t(max_radius / step) + 3;
   double light = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
     const double radius = double(i) * step, middle = radius + step / 2;
@@ -37,7 +37,7 @@ ApertureLight::ApertureLight(double obscuration) {
 }
 
 double ApertureLight::within(double radius, double variance) const {
-  const auto [i, next] = table_place(std::min(radius, most_radius) / step, within_.size());
+  const auto [i, next] = table_place(std::min(radius, max_radius) / step, within_.size());
   // A blur moves light down the slope of the brightness.
   const double slope = (brightness_[i + 1] - brightness_[i]) / step;
   return within_[i] + next * (within_[i + 1] - within_[i]) + pi * radius * variance * slope;

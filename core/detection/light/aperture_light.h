@@ -10,9 +10,9 @@ class ApertureLight {
   /// `obscuration`: its diameter over the aperture's, 0 to less than 1.
   explicit ApertureLight(double obscuration);
 
-  static constexpr double most_radius = 12.0;  // wavelength / diameter
+  static constexpr double max_radius = 12.0;  // wavelength / diameter
 
-  /// Returns the share of light within `radius`, at most `most_radius`, after a narrow blur of
+  /// Returns the share of light within `radius`, at most `max_radius`, after a narrow blur of
   /// `variance` along each axis [wavelength / diameter and its square].
   double within(double radius, double variance) const;
 

@@ -40,7 +40,7 @@ double PsfField::scale(PixelPosition at) const {
   const Polynomial by = powers(p.x_px, p.y_px);
   double sum = 0.0;
   for (std::size_t i = 0; i < terms; ++i) sum += log_scale[i] * by[i];
-  return std::exp(std::clamp(sum, least_log_scale, most_log_scale));
+  return std::exp(std::clamp(sum, min_log_scale, max_log_scale));
 }
 
 double PsfField::sigma_at(PixelPosition at) const { return with_pixel(width_px * scale(at)); }

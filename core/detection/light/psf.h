@@ -55,8 +55,8 @@ struct PsfField {
   double width_px = 1.0;   // sigma of the nearest Gaussian, without pixel, where the scale is 1
   Polynomial log_scale{};  // of the width, over u and v
   bool varies = false;     // whether log_scale is used
-  double least_log_scale = 0.0, most_log_scale = 0.0;  // what stars were seen to have
-  PixelPosition centre, half;                          // u = (x - centre.x) / half.x, v likewise
+  double min_log_scale = 0.0, max_log_scale = 0.0;  // what stars were seen to have
+  PixelPosition centre, half;                       // u = (x - centre.x) / half.x, v likewise
   // Parts of the shape: widths in units of that Gaussian's, without pixel.
   std::array<double, Psf::most> weights{1.0}, ratios{1.0};
   std::size_t count = 1;

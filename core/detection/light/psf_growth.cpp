@@ -14,20 +14,20 @@ namespace {
 
 constexpr std::array edges = {0.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0};  // of zones, in widths
 constexpr std::size_t zones = edges.size() - 1;
-constexpr double least_coverage = 0.3;  // of a star's zone by pixels that may be used
+constexpr double min_coverage = 0.3;  // of a star's zone by pixels that may be used
 constexpr double outlier_sigmas = 4.0;
 constexpr double tolerated_error = 0.15;  // relative, that does not make a pixel an outlier
 constexpr double sky_error = 0.3;         // around a star, in units of its background's prior
-constexpr double most_difference = 0.25;  // from the mixture's light
+constexpr double max_difference = 0.25;   // from the mixture's light
 // A part of less weight is a dark ring of diffraction, whose curve of growth is no power.
 constexpr double dark_ring = -1.0;
 // In seeing, light beyond a distance falls with the power 5/3 (Kolmogorov) to 3 (Moffat, beta 2.5)
 // far out, and 1.9 to 2.8 at the zones' distances.
 constexpr double power_of_seeing = 2.4;
 constexpr std::array obscurations = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
-constexpr double growth_error = 1e-3;      // of light within a distance
-constexpr double least_growth_gain = 4.0;  // of chi2, by which a shape is likelier
-static_assert(zones < most_parameters);
+constexpr double growth_error = 1e-3;    // of light within a distance
+constexpr double min_growth_gain = 4.0;  // of chi2, by which a shape is likelier
+static_assert(zones < max_parameters);
 
 double distance_px(const Trail& t, const FitPixel& p) {
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
@@ -121,17 +121,17 @@ Extrapolation by_seeing(const MeasuredGrowth& measured, const Growth& mixture) {
   }
   const Extrapolation by_power = extrapolated(measured, all, &fall);
   const Extrapolation by_mixture = extrapolated(measured, mixture, nullptr);
-  return by_power.chi2 > by_mixture.chi2 + least_growth_gain ? by_mixture : by_power;
+  return by_power.chi2 > by_mixture.chi2 + min_growth_gain ? by_mixture : by_power;
 }
 
 /// By the aperture's obscuration and the scale of diffraction that fit best.
 Extrapolation by_aperture(const MeasuredGrowth& measured, double width_px) {
-  constexpr double least_scale = 1.6, most_scale = 3.2, step = 1.01;  // in widths
+  constexpr double min_scale = 1.6, max_scale = 3.2, step = 1.01;  // in widths
   const double pixel = pixel_variance_px2 / (width_px * width_px);
   Extrapolation best;
   for (const double obscuration : obscurations) {
     const ApertureLight light(obscuration);
-    for (double scale = least_scale; scale < most_scale; scale *= step) {
+    for (double scale = min_scale; scale < max_scale; scale *= step) {
       Growth shape;
       for (std::size_t k = 0; k < zones; ++k)
         shape[k] = light.within(edges[k + 1] / scale, pixel / (scale * scale));
@@ -166,7 +166,7 @@ double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixt
     for (std::size_t k = 0; k < zones; ++k) {
       area[k] =
           area_px2(star.trail, edges[k + 1] * width_px) - area_px2(star.trail, edges[k] * width_px);
-      covered = covered && excess.pixels[k] > least_coverage * area[k] * density;
+      covered = covered && excess.pixels[k] > min_coverage * area[k] * density;
     }
     if (!covered) continue;
     all += flux * flux;
@@ -198,12 +198,12 @@ double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixt
     model[k] = by_model += of_model[k] / all;
     measured.by_sky[k] = by_sky += of_sky[k];
   }
-  const double least_weight = *std::min_element(
+  const double min_weight = *std::min_element(
       mixture.weights.begin(), mixture.weights.begin() + std::ptrdiff_t(mixture.count));
-  const double total = least_weight < dark_ring
+  const double total = min_weight < dark_ring
                            ? by_aperture(measured, mixture.sigma_at(mixture.centre)).total
                            : by_seeing(measured, model).total;
-  return std::abs(total - 1) < most_difference ? total : 1.0;
+  return std::abs(total - 1) < max_difference ? total : 1.0;
 }
 
 }  // namespace dmise

@@ -27,7 +27,7 @@ constexpr double mixture_outlier_sigmas = 4.0;  // light of a neighbour that was
 constexpr double significant_chi2 = 60.0;       // gain of a mixture over a Gaussian
 constexpr double negligible_chi2 = 25.0;        // loss by dropping a part
 constexpr int rounds = 3;                       // of linear least squares
-static_assert(all <= most_parameters);
+static_assert(all <= max_parameters);
 
 using Weights = std::array<double, parts>;
 constexpr Weights gaussian = {0.0, 0.0, 1.0};

@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t parameters = 5;    // flux, x, y, background, log of the width
 constexpr double gaussian_error = 0.05;  // of a Gaussian
-constexpr double least_width_px = 0.25, most_width_px = 25.0;
-constexpr int most_steps = 12;
-constexpr double settled = 1e-3;    // convergence: step of the log of the width
-constexpr double log_step = 0.01;   // of the derivative by it
-constexpr double most_step = 0.35;  // of the log of the width
+constexpr double min_width_px = 0.25, max_width_px = 25.0;
+constexpr int max_steps = 12;
+constexpr double settled = 1e-3;   // convergence: step of the log of the width
+constexpr double log_step = 0.01;  // of the derivative by it
+constexpr double max_step = 0.35;  // of the log of the width
 
 struct Linearised : NormalEquations {
   double chi2 = 0.0;
@@ -48,18 +48,18 @@ std::optional<StarWidth> fit_star_width(const std::vector<FitPixel>& pixels, con
                                         double width_px, double background_sigma_e) {
   if (pixels.size() < 2 * parameters) return std::nullopt;
   StarWidth fit{.trail = start, .log_width = std::log(width_px)};
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     Linearised normal = linearise(pixels, fit, background_sigma_e);
     if (!cholesky(normal.matrix, parameters)) return std::nullopt;
     const SmallVector move = solve(normal.matrix, normal.right, parameters);
-    const double by_width = std::clamp(move[4], -most_step, most_step);
+    const double by_width = std::clamp(move[4], -max_step, max_step);
     fit.trail.flux_e += move[0];
     fit.trail.x_px += std::clamp(move[1], -1.0, 1.0);
     fit.trail.y_px += std::clamp(move[2], -1.0, 1.0);
     fit.background_e += move[3];
     fit.log_width += by_width;
     const double width = std::exp(fit.log_width);
-    if (!(fit.trail.flux_e > 0) || !(width > least_width_px && width < most_width_px) ||
+    if (!(fit.trail.flux_e > 0) || !(width > min_width_px && width < max_width_px) ||
         !(std::hypot(fit.trail.x_px - start.x_px, fit.trail.y_px - start.y_px) <
           2 + 2 * width + start.length_px / 2))
       return std::nullopt;

@@ -36,7 +36,7 @@ class Problem {
     for (const unsigned mask : free)
       for (unsigned bit = 0; bit < trail_parameters; ++bit) size_ += mask >> bit & 1u;
     size_ += fits_background_ ? 1u : 0u;
-    if (size_ > most_parameters) throw Error("trail fit: more than 16 free parameters");
+    if (size_ > max_parameters) throw Error("trail fit: more than 16 free parameters");
     const std::size_t whole = (used_ + trail_block - 1) / trail_block * trail_block;
     x_.assign(whole, 0.0);
     y_.assign(whole, 0.0);
@@ -77,7 +77,7 @@ class Problem {
     };
     std::array<double, trail_block> ones;
     ones.fill(1.0);
-    std::array<const double*, most_parameters> gradients{};
+    std::array<const double*, max_parameters> gradients{};
     std::size_t k = 0;
     for (std::size_t t = 0; t < lights.size(); ++t)
       for (unsigned bit = 0; bit < trail_parameters; ++bit)
@@ -267,7 +267,7 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
   bool swings = false;  // whether the step may be one about the place
   Problem::Linear now = problem.linearise({std::move(start), 0.0}, nullptr);
   fit.degrees = int(pixels.size()) - int(n) + (settings.background_sigma_e > 0 ? 1 : 0);
-  for (int step = 0; step < settings.most_steps && !fit.converged; ++step) {
+  for (int step = 0; step < settings.max_steps && !fit.converged; ++step) {
     fit.chi2 = now.chi2;
     if (settings.good_enough_sigmas && fit.good(*settings.good_enough_sigmas)) break;
     std::optional<SmallVector> by = problem.step_from(now, damping);

@@ -29,7 +29,7 @@ struct FitSettings {
   Psf psf;
   double model_error = 0.0;         // relative error of the model, added to the noise
   double background_sigma_e = 0.0;  // > 0: fits a constant background with this prior
-  int most_steps = 12;
+  int max_steps = 12;
   double settled_chi2 = 1e-4;  // convergence: smallest gain of a step
   // Ends as soon as the chi2 is within so many sigmas of its expectation; empty: goes on.
   std::optional<double> good_enough_sigmas;

@@ -12,7 +12,7 @@ namespace {
 constexpr double point_length_px = 1e-3;  // shorter is a point: the limit is exact to 1e-7
 
 constexpr double square_below_px = 0.75;  // narrower parts have the square's term
-static_assert(TrailShape::most_parts == Psf::most);
+static_assert(TrailShape::max_parts == Psf::most);
 
 struct Table : NormalTable {
   Table() {

@@ -7,7 +7,7 @@ namespace dmise {
 
 /// A trail prepared for evaluation: a line convolved with concentric Gaussians.
 struct TrailShape {
-  static constexpr std::size_t most_parts = 8;
+  static constexpr std::size_t max_parts = 8;
 
   double x_px = 0.0, y_px = 0.0, flux_e = 0.0, length_px = 0.0, slope = 0.0, sagitta_px = 0.0;
   double cos_angle = 1.0, sin_angle = 0.0;
@@ -17,9 +17,9 @@ struct TrailShape {
   std::size_t parts = 0;
   // Of each part: inverse of sigma along the line at a place across it, and across; how far the
   // middle of its light along the line moves with the place across; whether it has that term.
-  double weight[most_parts] = {}, along[most_parts] = {}, across[most_parts] = {},
-         lean[most_parts] = {};
-  bool is_narrow[most_parts] = {};
+  double weight[max_parts] = {}, along[max_parts] = {}, across[max_parts] = {},
+         lean[max_parts] = {};
+  bool is_narrow[max_parts] = {};
 };
 
 /// Normal distribution function and density in steps of 1/64 from -7 to 7; beyond, 0 or 1 and 0.

@@ -15,7 +15,7 @@ namespace {
 constexpr int fine = 4;  // cells of the refined mesh in one
 // Bend in units of a pixel's noise from which on it is significant, and from which on all of it
 // is taken: straight lines miss the level by an eighth of it.
-constexpr float least_bend = 0.3f, sure_bend = 0.6f;
+constexpr float min_bend = 0.3f, sure_bend = 0.6f;
 
 const SkyBend& bend_at(const std::vector<SkyBend>& bends, const CellMesh& mesh, int i, int j) {
   return bends[std::size_t(std::clamp(j, 0, mesh.down - 1)) * std::size_t(mesh.across) +
@@ -33,7 +33,7 @@ struct CellsAround {
 CellsAround around(const CellMesh& raw, float sigma, int i, int j) {
   constexpr int reach = 2, rounds = 4;
   constexpr std::size_t terms = 6;
-  constexpr double least_scatter = 0.05;  // in a pixel's noise
+  constexpr double min_scatter = 0.05;  // in a pixel's noise
   struct Cell {
     std::array<double, terms> powers;
     double value, weight = 1.0, off = 0.0;
@@ -58,7 +58,7 @@ CellsAround around(const CellMesh& raw, float sigma, int i, int j) {
       c.off = c.value - std::inner_product(c.powers.begin(), c.powers.end(), parabola.begin(), 0.0);
       sizes.push_back(std::abs(c.off));
     }
-    scatter = std::max(1.4826 * middle_of(std::move(sizes)), least_scatter * double(sigma));
+    scatter = std::max(1.4826 * middle_of(std::move(sizes)), min_scatter * double(sigma));
     for (Cell& c : cells) {
       const double in_scatter = c.off / (3 * scatter);
       c.weight = 1 / (1 + in_scatter * in_scatter * in_scatter * in_scatter);
@@ -86,8 +86,7 @@ std::vector<SkyBend> sky_bends(const CellMesh& level, const CellMesh& sigma) {
                            level.cell(u + 1, v - 1) + level.cell(u - 1, v - 1));
       const float most = std::max({std::abs(bend.xx), std::abs(bend.xy), std::abs(bend.yy)});
       const float in_noise = most / sigma.cell(u, v);
-      const float share =
-          std::clamp((in_noise - least_bend) / (sure_bend - least_bend), 0.0f, 1.0f);
+      const float share = std::clamp((in_noise - min_bend) / (sure_bend - min_bend), 0.0f, 1.0f);
       out[std::size_t(j) * std::size_t(level.across) + std::size_t(i)] = {
           share * bend.xx, share * bend.xy, share * bend.yy};
     }

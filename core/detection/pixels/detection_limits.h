@@ -6,16 +6,16 @@ namespace dmise::detection_limits {
 inline constexpr int background_cell_px = 64;
 inline constexpr double seed_snr = 5.0;     // minimum peak of a source in the filtered frame
 inline constexpr double connect_snr = 3.0;  // threshold of its pixels
-inline constexpr double least_snr = 6.0;    // minimum SNR of the fitted flux
-inline constexpr double least_light_snr =
+inline constexpr double min_snr = 6.0;      // minimum SNR of the fitted flux
+inline constexpr double min_light_snr =
     3.0;  // of the fitted flux where it has the errors of the ends
 // Of a streak: minimum SNR with errors of its ends and of columns, and the matched filter's that no
 // noise reaches.
-inline constexpr double least_published_snr = 4.0, sure_snr = 15.0;
+inline constexpr double min_published_snr = 4.0, sure_snr = 15.0;
 // Minimum difference between a source's trail and a star's.
-inline constexpr double least_difference_px = 1.5;
+inline constexpr double min_difference_px = 1.5;
 // Minimum SNR of a streak against the scatter of stars beside it.
-inline constexpr double least_snr_in_stars = 10.0;
+inline constexpr double min_snr_in_stars = 10.0;
 // Minimum SNR at which a streak's evenness is measurable: in total, and per px.
 inline constexpr double even_snr = 25.0, even_snr_per_px = 5.0;
 // Deviance by which a short streak must beat two blended stars; a point that is no star; a row of
@@ -30,9 +30,9 @@ inline constexpr double chain_px = 30.0;
 inline constexpr double model_error = 0.03;
 // Relative error of the wings of a saturated source: per square of the sigma at which they begin,
 // with minimum and maximum.
-inline constexpr double wings_error = 0.02, least_wings_error = 0.1, most_wings_error = 0.5;
+inline constexpr double wings_error = 0.02, min_wings_error = 0.1, max_wings_error = 0.5;
 // Where the background's level is missed by more than this in units of a pixel's noise, streaks
 // without a single bright pixel are not searched for.
-inline constexpr double most_bend_in_noise = 0.15;
+inline constexpr double max_bend_in_noise = 0.15;
 
 }  // namespace dmise::detection_limits

@@ -12,8 +12,8 @@ namespace dmise {
 namespace {
 
 constexpr int cell_px = 48;
-constexpr int least_pixels = 200;  // of a cell, that are not hidden
-constexpr double least_scatter = 0.85;
+constexpr int min_pixels = 200;  // of a cell, that are not hidden
+constexpr double min_scatter = 0.85;
 
 /// What is not hidden in a cell, by quantiles: a streak does not count. Both scatters are 1 and the
 /// middle 0 of cells with too few pixels.
@@ -46,7 +46,7 @@ Level level_of(const FilteredFrame& frame, int x0, int y0, const BitMask* lit) {
   histogram[std::size_t(most)] = 0;  // hidden
   const int count = std::accumulate(histogram.begin(), histogram.end(), 0);
   const float hidden = 1.0f - float(without_light) / float(all);
-  if (count < least_pixels) return {.hidden = hidden};
+  if (count < min_pixels) return {.hidden = hidden};
   // Within a step the pixels are taken as even, +-1 as one step and a half wide: 0 is hidden.
   const auto quantile = [&](double share) {
     double left = share * count;
@@ -85,7 +85,7 @@ std::vector<FilteredFrame::Cell> smoothed(const std::vector<Level>& levels, int 
         }
       const auto n = double(middles.size());
       const double scatter = std::max(0.5 * (below + above) / n, above / n - sure);
-      mesh.push_back({float(median_of(std::move(middles))), float(std::max(least_scatter, scatter)),
+      mesh.push_back({float(median_of(std::move(middles))), float(std::max(min_scatter, scatter)),
                       levels[std::size_t(j) * std::size_t(across) + std::size_t(i)].hidden});
     }
   return mesh;

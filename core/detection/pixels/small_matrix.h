@@ -6,9 +6,9 @@
 // Symmetric matrices of a few parameters, of which the first `n` rows and columns are used.
 namespace dmise {
 
-inline constexpr std::size_t most_parameters = 16;
-using SmallVector = std::array<double, most_parameters>;
-using SmallMatrix = std::array<SmallVector, most_parameters>;
+inline constexpr std::size_t max_parameters = 16;
+using SmallVector = std::array<double, max_parameters>;
+using SmallMatrix = std::array<SmallVector, max_parameters>;
 
 /// Replaces the lower triangle by its Cholesky factor; false if not positive definite.
 inline bool cholesky(SmallMatrix& m, std::size_t n) {

@@ -89,9 +89,9 @@ void join_four(std::int16_t* const rows[4], std::size_t shift, std::size_t begin
     store(c + x, sums[2]);
     store(d + x, sums[3]);
     const I16 most = max(max(sums[0], sums[1]), max(sums[2], sums[3]));
-    const I16 most_half = max(max(upper0, upper1), max(lower0, lower1));
+    const I16 max_half = max(max(upper0, upper1), max(lower0, lower1));
     const auto column = std::uint32_t(x);
-    if (any_at_least(most_half, lower_half)) [[unlikely]] {
+    if (any_at_least(max_half, lower_half)) [[unlikely]] {
       const I16 halves[4] = {upper0, upper1, lower0, lower1};
       add_hits<4>(halves, {column, column, column + two, column + two + 1}, of_halves, hits.halves,
                   hits.in_halves);

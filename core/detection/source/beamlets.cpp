@@ -35,7 +35,7 @@ struct Level {
   }
 };
 
-Level level_of(const FilteredFrame& frame, int n, double least_snr) {
+Level level_of(const FilteredFrame& frame, int n, double min_snr) {
   Level level{.length = n, .angles = std::min(n, angle_cells), .noise = {}, .least = {}};
   if (n < shortest) return level;
   for (int a = 0; a < n; ++a) {
@@ -43,7 +43,7 @@ Level level_of(const FilteredFrame& frame, int n, double least_snr) {
     const double noise =
         FilteredFrame::steps * std::sqrt(n * frame.sum_variance(std::hypot(1.0, slope), n));
     level.noise.push_back(float(noise));
-    level.least.push_back(std::int16_t(std::min(least_snr * noise, 32767.0)));
+    level.least.push_back(std::int16_t(std::min(min_snr * noise, 32767.0)));
   }
   return level;
 }
@@ -254,7 +254,7 @@ class SumsPool {
 }  // namespace
 
 std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame& turned,
-                                   double least_snr, SimdLevel level, Threads& threads) {
+                                   double min_snr, SimdLevel level, Threads& threads) {
   struct Task {
     Orientation orientation;
     int first, size;
@@ -271,7 +271,7 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame
       for (int first = -earlier; first < major; first += size) tasks.push_back({o, first, size});
   }
   std::vector<Level> levels;
-  for (int n = 2; n <= longest; n *= 2) levels.push_back(level_of(frame, n, least_snr));
+  for (int n = 2; n <= longest; n *= 2) levels.push_back(level_of(frame, n, min_snr));
   const Lines by_rows{frame.snr.data(), frame.columns, frame.rows};
   const Lines by_columns{turned.snr.data(), frame.rows, frame.columns};
   const Kernels kernels(level);

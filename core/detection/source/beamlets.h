@@ -17,11 +17,11 @@ struct Beamlet {
 
 /// Sums a frame, which is also given turned, along lines of all directions and offsets whose
 /// lengths are 8, 16, .. 1024 px (at most the frame) by rows or columns, in two sets of strips that
-/// are a third or two thirds of a length apart, and returns those of at least `least_snr`, one for
+/// are a third or two thirds of a length apart, and returns those of at least `min_snr`, one for
 /// each small range of place and direction of each set, by falling SNR. Equal for any number of
 /// threads. Approximate discrete Radon transform (Brady 1998, SIAM J. Comput. 27, 107; beamlets:
 /// Donoho & Huo 2002): N^2 log N additions, and memory for 1024 rows a thread.
 std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame& turned,
-                                   double least_snr, SimdLevel level, Threads& threads);
+                                   double min_snr, SimdLevel level, Threads& threads);
 
 }  // namespace dmise

@@ -12,10 +12,10 @@ namespace {
 double gap_px(const Scene& scene, const Trail& t, double side) {
   constexpr double step_px = 0.5;
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  const double most_px = std::min(t.length_px + 6 * scene.sigma_px, scene.diagonal_px());
+  const double max_px = std::min(t.length_px + 6 * scene.sigma_px, scene.diagonal_px());
   double gap = 0.0;
   // Light of the end itself reaches over a seen pixel or two.
-  for (double beyond = 0.0; beyond < most_px; beyond += step_px) {
+  for (double beyond = 0.0; beyond < max_px; beyond += step_px) {
     const double along = side * (t.length_px / 2 + beyond);
     const int x = int(std::lround(t.x_px + along * c)), y = int(std::lround(t.y_px + along * s));
     if (!scene.contains(x, y)) break;

@@ -83,8 +83,8 @@ DMISE_INLINE int add_along(const LineSamples& line, int k, SampleSum& out) {
 using I16 = std::int16_t __attribute__((vector_size(DMISE_SIMD_BYTES)));
 using I8 = std::int8_t __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
 constexpr int shorts = DMISE_SIMD_BYTES / 2;
-constexpr int most_rows = 32;  // of which sums have 16 bits
-static_assert(31 * (1 << BandSums::bits) * most_rows < 32768);
+constexpr int max_rows = 32;  // of which sums have 16 bits
+static_assert(31 * (1 << BandSums::bits) * max_rows < 32768);
 static_assert(BandSums::block % shorts == 0 && shorts < BandSums::spare);
 
 DMISE_INLINE void add_row(const std::int8_t* at, std::int16_t weight, const BandSums& band) {
@@ -143,7 +143,7 @@ void sum_band(const LineSamples& line, const BandSums& band) {
       __builtin_memcpy(band.row + (begin - first), pixels + begin, std::size_t(end - begin));
     }
     add_row(at, weight, band);
-    if (++rows % most_rows == 0) gather_parts(band);
+    if (++rows % max_rows == 0) gather_parts(band);
   }
   gather_parts(band);
 }

@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 constexpr int neighbours = 20;  // on each side
-constexpr int least_neighbours = 12;
+constexpr int min_neighbours = 12;
 constexpr double dark_odds = 25.0;   // logarithm, of a gap without light against light
 constexpr double dark_share = 0.25;  // of a streak's light that a gap may have
 constexpr double dark_sigmas = 5.0;  // of the PSF: length of a gap that is none of the detector's
@@ -128,7 +128,7 @@ double rise_above_neighbours(const Scene& scene, const Trail& trail) {
     const auto other = slices(scene, line, extent.from, extent.to, k * step_px);
     if (2 * other.size() > own.size()) beside.push_back(clipped_mean(other, level)[0]);
   }
-  if (beside.size() < least_neighbours) return std::numeric_limits<double>::infinity();
+  if (beside.size() < min_neighbours) return std::numeric_limits<double>::infinity();
   // Stars only add light, so upward scatter counts if it is larger.
   const double middle = middle_of(beside);
   const double upwards = (value_of_rank(beside, beside.size() * 9 / 10) - middle) / 1.2816;

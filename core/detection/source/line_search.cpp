@@ -11,8 +11,8 @@
 namespace dmise {
 namespace {
 
-constexpr double most_bend = 0.03;  // sagitta over length
-constexpr int most_rounds = 8;      // of moving the ends
+constexpr double max_bend = 0.03;  // sagitta over length
+constexpr int max_rounds = 8;      // of moving the ends
 
 /// The samples of a frame along a trail: one in each row or column, between two pixels.
 class Walk {
@@ -115,7 +115,7 @@ Fit polished(const FilteredFrame& frame, Fit best) {
       for (const double side : {1.0, -1.0}) {
         const Trail trial = changed(best.trail, what, side * step_px);
         const double snr = snr_along(frame, trial);
-        if (!(snr > best.snr) || std::abs(trial.sagitta_px) > most_bend * trial.length_px) continue;
+        if (!(snr > best.snr) || std::abs(trial.sagitta_px) > max_bend * trial.length_px) continue;
         best = {trial, snr};
         better = true;
         break;
@@ -145,10 +145,10 @@ Trail part_of(const Trail& t, double begin_px, double end_px) {
 /// The best ends of a trail on its line and on lines a little turned, of all that lie within one
 /// length beside it: the part of the line with the largest SNR.
 Fit with_best_ends(const FilteredFrame& frame, const Fit& start) {
-  constexpr double least_beyond_px = 24.0, turn_px = 0.6;
+  constexpr double min_beyond_px = 24.0, turn_px = 0.6;
   constexpr int parts = 96;  // of the line, between which ends are
   const double length = std::max(start.trail.length_px, 4.0);
-  const double reach = length / 2 + std::max(least_beyond_px, length);
+  const double reach = length / 2 + std::max(min_beyond_px, length);
   Fit best = start;
   std::vector<double> sum;
   std::vector<int> count, at;
@@ -230,10 +230,10 @@ double snr_along(const FilteredFrame& frame, const Trail& trail) {
   return line.samples > 0 ? line.sum / line.noise : 0.0;
 }
 
-Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr) {
+Trail climbed(const FilteredFrame& frame, const Trail& start, double min_snr) {
   Fit best = polished(frame, {start, snr_along(frame, start)});
-  if (best.snr < least_snr) return best.trail;
-  for (int round = 0; round < most_rounds; ++round) {
+  if (best.snr < min_snr) return best.trail;
+  for (int round = 0; round < max_rounds; ++round) {
     Fit next = with_best_ends(frame, best);
     if (!(next.snr > best.snr)) break;
     best = polished(frame, next);
@@ -260,7 +260,7 @@ BandSums LineBand::of(int reach) {
 
 ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turned,
                              const Trail& trail, LineBand& band) {
-  constexpr int least_lines = 12;
+  constexpr int min_lines = 12;
   constexpr int widest_step = 24;  // of lines that are summed together
   // On each side; what is beside a short line changes sooner.
   const int lines = trail.length_px > 100 ? 48 : 24;
@@ -297,7 +297,7 @@ ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turn
     }
     if (samples > 2) snr.push_back(sum / noise.of(samples));
   }
-  if (snr.size() < least_lines) return {};
+  if (snr.size() < min_lines) return {};
   std::sort(snr.begin(), snr.end());
   const double median = snr[snr.size() / 2];
   const double scatter = (snr[snr.size() * 9 / 10] - median) / 1.2816;

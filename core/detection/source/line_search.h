@@ -30,8 +30,8 @@ enum class TrailChange : std::uint8_t { offset, direction, first_end, last_end, 
 Trail changed(Trail trail, TrailChange what, double by_px);
 
 /// The trail near `start` along which `snr_along` is largest, by steps of its offset, direction,
-/// ends and curvature; only by the first two where these find less than `least_snr`.
-Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr = 5.2);
+/// ends and curvature; only by the first two where these find less than `min_snr`.
+Trail climbed(const FilteredFrame& frame, const Trail& start, double min_snr = 5.2);
 
 /// Memory for the sums of lines beside each other, which is used again.
 struct LineBand {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double bent_from_px = 15.0;      // shorter streaks are straight
 constexpr double sloped_from_px = 15.0;    // and uniformly bright
-constexpr int most_rounds = 8;             // of fitting and rejecting
+constexpr int max_rounds = 8;              // of fitting and rejecting
 constexpr double settled_px = 0.5;         // convergence of the ends
 constexpr double uneven_settled_px = 2.0;  // where the model is far from the light
 constexpr double uneven_error = 0.2;
@@ -182,11 +182,11 @@ double background_sigma_e(const FitPixel& pixel) {
 }
 
 bool is_bounded(const Scene& scene, const Trail& t) {
-  constexpr double most_diagonals = 2.0;  // of a streak through the frame, with room for its fit
-  const double most_px = most_diagonals * (scene.diagonal_px() + 6 * scene.sigma_px);
+  constexpr double max_diagonals = 2.0;  // of a streak through the frame, with room for its fit
+  const double max_px = max_diagonals * (scene.diagonal_px() + 6 * scene.sigma_px);
   return std::isfinite(t.x_px + t.y_px + t.flux_e + t.angle_rad + t.slope) &&
-         t.length_px <= most_px && std::abs(t.sagitta_px) <= most_px &&
-         std::abs(t.x_px) + std::abs(t.y_px) <= 2 * most_px;
+         t.length_px <= max_px && std::abs(t.sagitta_px) <= max_px &&
+         std::abs(t.x_px) + std::abs(t.y_px) <= 2 * max_px;
 }
 
 bool plausible(const Scene& scene, const Trail& t) {
@@ -215,8 +215,8 @@ Around::Around(const Trail& trail, double margin_px)
 
 /// The first and the last column of a row outside of which nothing is.
 std::pair<int, int> Around::columns_near(int y) const {
-  constexpr double most = 1e9, least_sine = 1e-3;
-  if (std::abs(sin_) < least_sine) return {int(-most), int(most)};
+  constexpr double most = 1e9, min_sine = 1e-3;
+  if (std::abs(sin_) < min_sine) return {int(-most), int(most)};
   const double reach_px = margin_px_ + std::abs(trail_.sagitta_px) + 1;
   const double middle = trail_.x_px + (y - trail_.y_px) * cos_ / sin_;
   const double half = reach_px / std::abs(sin_);
@@ -241,12 +241,12 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   const double tolerance = std::clamp(3 * model_error, 0.15, 0.45);
   std::vector<FitPixel> pixels, before;
   double moved_px = 0.0;
-  const int least_rounds = draft ? 2 : 3, last_round = draft ? 2 : most_rounds;
-  for (int round = 0; round < least_rounds || (round < last_round && moved_px > settles_px);
+  const int min_rounds = draft ? 2 : 3, last_round = draft ? 2 : max_rounds;
+  for (int round = 0; round < min_rounds || (round < last_round && moved_px > settles_px);
        ++round) {
     if (!plausible(scene, trail)) return std::nullopt;
     // The nearest Gaussian until the place is known.
-    const Psf psf = round + 1 < least_rounds || draft ? Psf(sigma_px) : scene.psf.at(middle);
+    const Psf psf = round + 1 < min_rounds || draft ? Psf(sigma_px) : scene.psf.at(middle);
     const auto all = pixels_near(scene, trail, margin_px);
     // A starting trail has a known brightness only for a streak.
     pixels = round > 0 ? without_outliers(all, {&trail, 1}, source.fit.background_e, tolerance, psf)
@@ -258,9 +258,9 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     settings.psf = psf;
     settings.model_error = model_error;
     settings.background_sigma_e = background_sigma_e(pixels.front());
-    settings.most_steps = 20;
+    settings.max_steps = 20;
     // Nothing has changed since the round before.
-    const bool same_psf = round + 1 != least_rounds || draft || scene.psf.is_round_gaussian();
+    const bool same_psf = round + 1 != min_rounds || draft || scene.psf.is_round_gaussian();
     if (round > 0 && same_psf && source.fit.converged && moved_px <= settles_px &&
         are_same(pixels, before))
       continue;

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr int most_stars = 4;  // in a row, that may imitate a streak
+constexpr int max_stars = 4;  // in a row, that may imitate a streak
 
 /// `count` stars in a row along the line, which share its flux.
 std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
@@ -44,7 +44,7 @@ FitSettings comparison_of(const Scene& scene, const Source& source) {
   const Trail& t = source.trail();
   return {.psf = scene.psf.at({t.x_px, t.y_px}),
           .model_error = std::max(source.model_error, detection_limits::model_error),
-          .most_steps = 15,
+          .max_steps = 15,
           .settled_chi2 = comparison_settled_chi2};
 }
 
@@ -52,7 +52,7 @@ FitSettings comparison_of(const Scene& scene, const Source& source) {
 bool is_piece_of_star(const Scene& scene, const Trail& line, const Trail& star, double margin_px,
                       const FitSettings& fit_settings) {
   const double spare_px = star.length_px - line.length_px;
-  if (spare_px <= 0 || across_px(line, star) > detection_limits::least_difference_px) return false;
+  if (spare_px <= 0 || across_px(line, star) > detection_limits::min_difference_px) return false;
   for (const double side : {-0.5, 0.0, 0.5}) {
     Trail whole = star;
     whole.x_px = line.x_px + side * spare_px * std::cos(star.angle_rad);
@@ -98,7 +98,7 @@ bool are_two_trails(const Scene& scene, const Trail& star, const Source& point) 
 double rarity_of_row(const Scene& scene, const Trail& line, int count) {
   constexpr double counts_slope = 1.1;  // of the logarithm of numbers, by that of light
   constexpr double companions = 0.01;   // share of stars that have one so near, by nature
-  constexpr double most_rarity = 40.0;  // what is beside all chance has other reasons
+  constexpr double max_rarity = 40.0;   // what is beside all chance has other reasons
   if (count < 3 || !(scene.sources_per_px2 > 0)) return 0.0;
   const double noise_e =
       scene.noise_e_at(line.x_px, line.y_px) * 2 * std::sqrt(pi) * scene.sigma_px;
@@ -112,15 +112,15 @@ double rarity_of_row(const Scene& scene, const Trail& line, int count) {
   };
   const double rows = per_px2 * double(scene.counts.pixels.size()) * chance(second) *
                       std::pow(chance(next), count - 2);
-  return std::clamp(-2 * std::log(rows), 0.0, most_rarity);
+  return std::clamp(-2 * std::log(rows), 0.0, max_rarity);
 }
 
 }  // namespace
 
 double share_of_trails_on(const Scene& scene, const Trail& line) {
-  constexpr double least_trail_sigmas = 5.0, on_line_sigmas = 3.0;
+  constexpr double min_trail_sigmas = 5.0, on_line_sigmas = 3.0;
   const Trail star = scene.star_trail(line.x_px, line.y_px);
-  if (star.length_px < least_trail_sigmas * scene.sigma_px) return 0.0;
+  if (star.length_px < min_trail_sigmas * scene.sigma_px) return 0.0;
   const double on_line_px = on_line_sigmas * scene.sigma_px;
   const double share = on_line_px / std::max(across_px(star, line), on_line_px);
   return share * share;
@@ -182,7 +182,7 @@ bool beats_stars(const Scene& scene, const Source& source) {
   if (is_piece_of_star(scene, line, star, margin_px, fit_settings)) return false;
   const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
   // More stars fit better by chance, by about one per additional parameter.
-  for (int count = 2; count <= most_stars; ++count) {
+  for (int count = 2; count <= max_stars; ++count) {
     const double freedom = 3.0 * count - 5.0;
     const double as_stars = deviance_of_stars(pixels, line, star, count, fit_settings) + freedom +
                             rarity_of_row(scene, line, count);
@@ -192,16 +192,16 @@ bool beats_stars(const Scene& scene, const Source& source) {
 }
 
 bool is_wide_body(const Scene& scene, const Source& source) {
-  constexpr double wider = 1.7, least_gain = 10.0;  // of deviance
+  constexpr double wider = 1.7, min_gain = 10.0;  // of deviance
   const Trail& t = source.trail();
   const auto pixels = pixels_near(scene, t, 3 * wider * scene.sigma_px + 2.5);
   if (pixels.empty()) return false;
   FitSettings settings{.psf = scene.psf.at({t.x_px, t.y_px}),
                        .background_sigma_e = background_sigma_e(pixels.front()),
-                       .most_steps = 20};
+                       .max_steps = 20};
   const double narrow = fit_trails(pixels, {t}, {source.free}, settings).deviance;
   settings.psf = Psf(wider * scene.sigma_px);
-  return narrow - fit_trails(pixels, {t}, {source.free}, settings).deviance > least_gain;
+  return narrow - fit_trails(pixels, {t}, {source.free}, settings).deviance > min_gain;
 }
 
 }  // namespace dmise

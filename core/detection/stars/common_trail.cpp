@@ -15,24 +15,24 @@ namespace {
 // Of slopes [SNR/px times the filter's width], so that no star counts for more. Neither brightness
 // nor the whole slope is limited: a limit is reached beyond the end of a bright star.
 constexpr float steepest = 6.0F;
-constexpr double least_coherence = 0.25;  // of edges; 0: all directions are equally frequent
-constexpr double least_share = 0.12;      // of the beginnings of light that have an end
-constexpr double least_scatters = 8.0;
+constexpr double min_coherence = 0.25;  // of edges; 0: all directions are equally frequent
+constexpr double min_share = 0.12;      // of the beginnings of light that have an end
+constexpr double min_scatters = 8.0;
 constexpr double shortest_common_sigmas = 5.0, longest_common_px = 400.0;
-constexpr std::size_t most_beginnings = 4000;
+constexpr std::size_t max_beginnings = 4000;
 
 /// Slopes of SNR along a direction.
 using SlopeImage = Image<float, struct SlopeCarrier>;
 
 /// Three times that of noise through the filter.
-float least_slope(double sigma_px) { return float(3.0 / (std::sqrt(2.0) * sigma_px)); }
+float min_slope(double sigma_px) { return float(3.0 / (std::sqrt(2.0) * sigma_px)); }
 
 /// Slopes of a frame's SNR of points where they exceed noise.
 class Slopes {
  public:
   explicit Slopes(const Scene& scene)
       : snr_(point_snr(scene)),
-        least_(least_slope(scene.sigma_px)),
+        least_(min_slope(scene.sigma_px)),
         most_(steepest / float(scene.sigma_px)) {}
 
   /// Direction along which most edges run; empty if they run in all.
@@ -45,7 +45,7 @@ class Slopes {
       cross += weight * double(2 * by_x * by_y);
       all += weight * square;
     });
-    if (!(all > 0) || !(std::hypot(plus, cross) >= least_coherence * all)) return std::nullopt;
+    if (!(all > 0) || !(std::hypot(plus, cross) >= min_coherence * all)) return std::nullopt;
     return 0.5 * std::atan2(-cross, -plus);
   }
 
@@ -82,10 +82,10 @@ struct PixelStep {
 class Beginnings {
  public:
   Beginnings(SlopeImage slopes, double sigma_px) : slopes_(std::move(slopes)) {
-    const float least = least_slope(sigma_px);
+    const float least = min_slope(sigma_px);
     const auto all = std::size_t(
         std::ranges::count_if(slopes_.pixels, [&](float slope) { return slope > least; }));
-    const std::size_t every = all / most_beginnings + 1;
+    const std::size_t every = all / max_beginnings + 1;
     std::size_t seen = 0;
     for (int y = 0; y < slopes_.rows; ++y)
       for (int x = 0; x < slopes_.columns; ++x) {
@@ -187,24 +187,24 @@ std::vector<PixelStep> distances_along(double direction_rad, double from_px, dou
 }  // namespace
 
 std::optional<PixelPosition> common_trail(const Scene& scene) {
-  const double most_px =
+  const double max_px =
       std::min(longest_common_px, 0.6 * std::min(scene.counts.columns, scene.counts.rows));
-  const double least_px = shortest_common_sigmas * std::sqrt(2.0) * scene.sigma_px;
-  if (!(least_px < most_px)) return std::nullopt;
+  const double min_px = shortest_common_sigmas * std::sqrt(2.0) * scene.sigma_px;
+  if (!(min_px < max_px)) return std::nullopt;
   std::optional<Slopes> slopes(scene);
   const auto direction = slopes->direction_rad();
   if (!direction) return std::nullopt;
   SlopeImage along = slopes->along(*direction);
   slopes.reset();
   const Beginnings beginnings(std::move(along), scene.sigma_px);
-  const auto distances = distances_along(*direction, least_px, most_px);
-  std::vector<double> shares = beginnings.shares_at(distances, int(1.1 * most_px) + 4);
+  const auto distances = distances_along(*direction, min_px, max_px);
+  std::vector<double> shares = beginnings.shares_at(distances, int(1.1 * max_px) + 4);
   const auto best = std::ranges::max_element(shares);
   const double most = *best;
   const PixelStep& at = distances[std::size_t(best - shares.begin())];
   const PixelPosition peak{double(at.x), double(at.y)};
   for (double& share : shares) share = std::abs(share);
-  if (most < least_share || most < least_scatters * 1.48 * median_of(shares)) return std::nullopt;
+  if (most < min_share || most < min_scatters * 1.48 * median_of(shares)) return std::nullopt;
   return middle_of_peak(beginnings, peak);
 }
 

@@ -12,14 +12,14 @@
 namespace dmise {
 namespace {
 
-constexpr double subtracted_snr = 0.4;   // of a star, or of a pixel with its light, and more
-constexpr double most_trail_px = 500.0;  // of stars: longer ones are streaks of their own
-constexpr double spare_px = 20.0;        // beside the frame, from where light of stars comes in
-constexpr double hidden_snr = 5.0;       // light of which too much may be left
-constexpr double lit_noise = 0.4;        // light in a pixel [its noise] that a fit must not take
+constexpr double subtracted_snr = 0.4;  // of a star, or of a pixel with its light, and more
+constexpr double max_trail_px = 500.0;  // of stars: longer ones are streaks of their own
+constexpr double spare_px = 20.0;       // beside the frame, from where light of stars comes in
+constexpr double hidden_snr = 5.0;      // light of which too much may be left
+constexpr double lit_noise = 0.4;       // light in a pixel [its noise] that a fit must not take
 // By how many sigmas of its scatter a star may be brighter than expected: when its light is hidden,
 // and when it is compared with a source.
-constexpr double subtracted_sigmas = 3.0, most_sigmas = 7.0;
+constexpr double subtracted_sigmas = 3.0, max_sigmas = 7.0;
 // Scatter from which on any star may be as bright as any source.
 constexpr double flickering = 0.35;
 
@@ -50,18 +50,17 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
                                      StarsSeen& seen) {
   const double unit = std::sqrt(kernel_square_sum(frame.sigma_px));
   // The light of the faintest star that is subtracted, also where noise is half of the middle.
-  const double least_e =
+  const double min_e =
       0.5 * subtracted_snr * scene.background.median_sigma_dn() * scene.gain_e_per_dn / unit;
-  if (!(least_e > 0)) return std::nullopt;
+  if (!(min_e > 0)) return std::nullopt;
   const double longest_px = scene.stars.longest_trail_px();
-  if (longest_px > most_trail_px) return std::nullopt;
+  if (longest_px > max_trail_px) return std::nullopt;
   const double beyond_px = spare_px + 0.5 * longest_px;
-  auto expected = sky.stars_in(header, frame.columns, frame.rows, least_e, beyond_px);
+  auto expected = sky.stars_in(header, frame.columns, frame.rows, min_e, beyond_px);
   const StarAgreement agreement(scene, frame, expected);
   seen = agreement.seen();
   if (!seen.agree()) return std::nullopt;
-  const auto planets =
-      ExpectedStars(header, frame.columns, frame.rows, least_e, beyond_px).planets();
+  const auto planets = ExpectedStars(header, frame.columns, frame.rows, min_e, beyond_px).planets();
   expected.insert(expected.end(), planets.begin(), planets.end());
   BitMask lit(frame.columns, frame.rows);
   std::vector<KnownStars::Star> stars;
@@ -82,7 +81,7 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
     const PixelPosition expected_at = expected[i].place + seen.shift;
     const StarLightRatio& light = agreement.light_at(expected_at);
     const double most =
-        light.scatter > flickering ? HUGE_VAL : std::exp(most_sigmas * light.scatter);
+        light.scatter > flickering ? HUGE_VAL : std::exp(max_sigmas * light.scatter);
     stars.push_back({expected_at, light.middle * expected[i].signal_e * most * expected[i].most});
   }
   return KnownStars(sky, header, std::move(stars), std::move(lit));

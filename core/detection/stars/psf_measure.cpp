@@ -15,14 +15,14 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t least_stars = 8, least_for_slopes = 30;
-constexpr std::size_t most_candidates = 200, most_stars = 100;
-constexpr std::size_t most_core_pixels = 12000, most_shape_pixels = 20000, least_shape_pixels = 30;
+constexpr std::size_t min_stars = 8, least_for_slopes = 30;
+constexpr std::size_t max_candidates = 200, max_stars = 100;
+constexpr std::size_t max_core_pixels = 12000, max_shape_pixels = 20000, min_shape_pixels = 30;
 constexpr double shape_widths = 10.0;   // reach of the shape, in units of the width
 constexpr double width_floor = 0.01;    // scatter of widths that is no change over the frame
 constexpr double trails_from_px = 1.5;  // a shorter trail can't be told from a point
 // Rings of an obscured aperture are no Gaussian, by ten times the noise of a bright star.
-constexpr double most_reduced_chi2 = 40.0, most_of_median_chi2 = 3.0;
+constexpr double max_reduced_chi2 = 40.0, most_of_median_chi2 = 3.0;
 constexpr double outlier_scatters = 4.0;
 
 struct Star {
@@ -60,7 +60,7 @@ std::vector<Star> fit_candidates(const Scene& scene, const ComponentMap& map,
   std::vector<Star> stars;
   std::size_t used = 0, tried = 0;
   for (const Component* c : candidates) {
-    if (stars.size() == most_stars || tried == most_candidates || used > most_core_pixels) break;
+    if (stars.size() == max_stars || tried == max_candidates || used > max_core_pixels) break;
     const Trail start = trail_of(scene, *c);
     const double reach_px = core_reach_px(width_px);
     if (!is_whole(scene, *c) || !map.is_alone(start, reach_px, *c)) continue;
@@ -70,7 +70,7 @@ std::vector<Star> fit_candidates(const Scene& scene, const ComponentMap& map,
     used += pixels.size();
     const double sigma_e = background_sigma_e(pixels.front());
     const auto fit = fit_star_width(pixels, start, width_px, sigma_e);
-    if (!fit || fit->reduced_chi2 > most_reduced_chi2) continue;
+    if (!fit || fit->reduced_chi2 > max_reduced_chi2) continue;
     if (start.length_px >= trails_from_px) {
       Trail point = fit->trail;
       point.length_px = 0.0;
@@ -137,7 +137,7 @@ WidthFit fit_widths(const std::vector<Star>& stars, const PsfField& field, std::
 /// Width and its change over the frame; stars far from it are dropped.
 void fit_field(std::vector<Star>& stars, PsfField& field) {
   WidthFit best;
-  for (int round = 0; round < 3 && stars.size() >= least_stars; ++round) {
+  for (int round = 0; round < 3 && stars.size() >= min_stars; ++round) {
     best = fit_widths(stars, field, 1);
     field.varies = false;
     if (stars.size() >= least_for_slopes) {
@@ -161,8 +161,8 @@ void fit_field(std::vector<Star>& stars, PsfField& field) {
   field.log_scale[0] = 0.0;
   for (const Star& star : stars) {
     const double log_scale = best.at(powers_of(star, field)) - best.polynomial[0];
-    field.least_log_scale = std::min(field.least_log_scale, log_scale);
-    field.most_log_scale = std::max(field.most_log_scale, log_scale);
+    field.min_log_scale = std::min(field.min_log_scale, log_scale);
+    field.max_log_scale = std::max(field.max_log_scale, log_scale);
   }
 }
 
@@ -172,12 +172,12 @@ std::vector<ShapeStar> shape_stars(const Scene& scene, const ComponentMap& map,
   std::vector<ShapeStar> out;
   std::size_t used = 0;
   for (const Star& star : stars) {
-    if (used > most_shape_pixels) break;
+    if (used > max_shape_pixels) break;
     const double width_px = field.sigma_at({star.fit.trail.x_px, star.fit.trail.y_px});
     ShapeStar shape{.trail = star.fit.trail, .background_e = star.fit.background_e};
     shape.pixels = map.pixels_around(scene, star.fit.trail, std::max(shape_widths * width_px, 6.0),
                                      *star.component, every);
-    if (shape.pixels.size() < least_shape_pixels) continue;
+    if (shape.pixels.size() < min_shape_pixels) continue;
     used += shape.pixels.size();
     shape.background_sigma_e = background_sigma_e(shape.pixels.front());
     out.push_back(std::move(shape));
@@ -189,7 +189,7 @@ std::vector<ShapeStar> shape_stars(const Scene& scene, const ComponentMap& map,
 
 PsfField measure_psf(const Scene& scene, const std::vector<Component>& components) {
   const auto candidates = psf_candidates(scene, components);
-  if (candidates.size() < least_stars) return scene.psf;
+  if (candidates.size() < min_stars) return scene.psf;
   const ComponentMap map(components, scene.counts.columns, scene.counts.rows);
   PsfField field;
   field.centre = {(scene.counts.columns - 1) / 2.0, (scene.counts.rows - 1) / 2.0};
@@ -199,13 +199,13 @@ PsfField measure_psf(const Scene& scene, const std::vector<Component>& component
   for (int round = 0; round < 3; ++round) {  // again where the header's width was far off
     stars = fit_candidates(scene, map, candidates, width_px);
     drop_bad_fits(stars);
-    if (stars.size() < least_stars) return scene.psf;
+    if (stars.size() < min_stars) return scene.psf;
     const double before = width_px;
     width_px = std::exp(median_log_width(stars));
     if (std::abs(width_px / before - 1) < 0.3) break;
   }
   fit_field(stars, field);
-  if (stars.size() < least_stars) return scene.psf;
+  if (stars.size() < min_stars) return scene.psf;
   field.stars = int(stars.size());
   const auto shapes = shape_stars(scene, map, stars, field);
   fit_psf_ellipse(shapes, field);

@@ -9,21 +9,21 @@
 namespace dmise {
 namespace {
 
-constexpr float least_peak_snr = 20.0f;
+constexpr float min_peak_snr = 20.0f;
 constexpr int zones_across = 6, zones_down = 4;
-constexpr double most_extent_px = 400.0;  // of a star's trail: a longer one is rarely alone
-constexpr double most_sigmas = 30.0;  // of the header's Gaussian, to which a star's light extends
+constexpr double max_extent_px = 400.0;  // of a star's trail: a longer one is rarely alone
+constexpr double max_sigmas = 30.0;  // of the header's Gaussian, to which a star's light extends
 
 /// Whether a component may be a whole star by its rectangle.
 bool has_extent_of_star(const Scene& scene, const Component& c) {
-  if (c.peak_snr < least_peak_snr) return false;
+  if (c.peak_snr < min_peak_snr) return false;
   const int width = c.max_x - c.min_x + 1, height = c.max_y - c.min_y + 1;
-  if (width > most_extent_px || height > most_extent_px) return false;
+  if (width > max_extent_px || height > max_extent_px) return false;
   if (c.min_x < 3 || c.min_y < 3 || c.max_x > scene.counts.columns - 4 ||
       c.max_y > scene.counts.rows - 4)
     return false;
   const Trail star = scene.star_trail(c.peak_x, c.peak_y);
-  const double light_px = most_sigmas * scene.sigma_px + 6;
+  const double light_px = max_sigmas * scene.sigma_px + 6;
   return width < star.length_px * std::abs(std::cos(star.angle_rad)) + light_px &&
          height < star.length_px * std::abs(std::sin(star.angle_rad)) + light_px;
 }

@@ -14,15 +14,15 @@
 namespace dmise {
 namespace {
 
-constexpr double least_light = 0.1;  // of what is expected, in a fit
+constexpr double min_light = 0.1;    // of what is expected, in a fit
 constexpr double fitted_snr = 10.0;  // of a star's light: fainter ones are not fitted
 constexpr float fitted_noise = 0.5;  // light in a pixel [its noise] from which on it is fitted
 constexpr float neighbour_noise = 0.1;
 constexpr float model_error = 0.03F;  // of the Gaussian, in units of the light
-constexpr double most_step_px = 0.7;
-constexpr double most_trail_px = 60.0;  // light of longer ones is faint in a pixel
-constexpr std::size_t parameters = 3;   // light relative to what is expected, x, y
-constexpr std::int32_t least_pixels = 5;
+constexpr double max_step_px = 0.7;
+constexpr double max_trail_px = 60.0;  // light of longer ones is faint in a pixel
+constexpr std::size_t parameters = 3;  // light relative to what is expected, x, y
+constexpr std::int32_t min_pixels = 5;
 
 /// The place of a star; ordered by y.
 struct Expected {
@@ -59,7 +59,7 @@ class StarFitter {
     image_.draw_with_slopes(star.trail, sigma_px, star.flux_e / star.noise_e, fitted_noise);
     if (image_.x1 < image_.x0 || image_.y1 < image_.y0) return false;
     read_pixels(star.noise_e);
-    const auto reach_px = float(4 * sigma_px + star.trail.length_px / 2 + most_step_px);
+    const auto reach_px = float(4 * sigma_px + star.trail.length_px / 2 + max_step_px);
     for_neighbours(stars, rows, image_, reach_px, i, [&](const ShownStar& other) {
       beside_.draw(other.trail, sigma_px, other.flux_e / star.noise_e, neighbour_noise);
       subtract_beside();
@@ -115,7 +115,7 @@ class StarFitter {
     add_pixels(image_.row(image_.y0), image_.row_by_x(image_.y0), image_.row_by_y(image_.y0),
                pixels_.data(), image_.stride(), image_.height(), float(1 / star.noise_e),
                model_error, sums);
-    if (sums.used < least_pixels) return false;
+    if (sums.used < min_pixels) return false;
     SmallMatrix matrix{};
     SmallVector right{};
     for (std::size_t a = 0; a < parameters; ++a) {
@@ -127,7 +127,7 @@ class StarFitter {
     matrix[2][2] += place_weight_;
     if (!cholesky(matrix, parameters)) return false;
     const SmallVector step = solve(matrix, right, parameters);
-    if (std::hypot(step[1], step[2]) > most_step_px || !(step[0] > least - 1)) return false;
+    if (std::hypot(step[1], step[2]) > max_step_px || !(step[0] > least - 1)) return false;
     star.light_error =
         std::hypot(std::sqrt(inverse_column(matrix, 0, parameters)[0]), double(model_error));
     star.flux_e *= 1 + step[0];
@@ -164,9 +164,9 @@ std::vector<ShownStar> shown_stars(const Scene& scene, const StarAgreement& agre
   for (std::size_t i = 0; i < stars.size(); ++i) {
     const ShownStar& star = stars[i];
     const double snr = unit * star.flux_e / star.noise_e;
-    const bool may_be_fitted = star.trail.length_px < most_trail_px;
+    const bool may_be_fitted = star.trail.length_px < max_trail_px;
     if (!expected[i].varies()) {
-      if (snr > fitted_snr && may_be_fitted) fitter.fit(stars, rows, i, least_light);
+      if (snr > fitted_snr && may_be_fitted) fitter.fit(stars, rows, i, min_light);
       continue;
     }
     const ShownStar unfitted = star;

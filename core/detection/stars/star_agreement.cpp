@@ -15,7 +15,7 @@ constexpr double looked_for_snr = 8.0;  // of a star that must be seen if there 
 constexpr double crowded_snr = 200.0;   // brighter ones are saturated, or wide
 constexpr double measured_snr = 12.0;   // of a star whose light is measured
 constexpr double seen_snr = 3.0;
-constexpr double most_shift_px = 2.5;
+constexpr double max_shift_px = 2.5;
 constexpr std::size_t enough_stars = 5;   // to measure a shift, or light
 constexpr int cells = 12;                 // of the mesh of light, both ways
 constexpr std::size_t most_in_cell = 16;  // of stars whose light is measured there
@@ -74,8 +74,8 @@ StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
     if (peak < looked_for_snr) continue;
     ++seen_.expected;
     const auto off =
-        centroid_near(frame, star.place, trail.length_px / 2 + 2 * scene.sigma_px + most_shift_px);
-    if (!off || std::hypot(off->x_px, off->y_px) > most_shift_px) continue;
+        centroid_near(frame, star.place, trail.length_px / 2 + 2 * scene.sigma_px + max_shift_px);
+    if (!off || std::hypot(off->x_px, off->y_px) > max_shift_px) continue;
     ++seen_.found;
     if (peak > crowded_snr) continue;
     dx.push_back(off->x_px);
@@ -94,7 +94,7 @@ StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
 
 void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame,
                                   const std::vector<ExpectedStar>& stars) {
-  constexpr double least_ratio = 0.02;  // behind clouds
+  constexpr double min_ratio = 0.02;  // behind clouds
   std::vector<std::vector<double>> logs(light_.size());
   std::vector<double> all;
   const double unit = std::sqrt(kernel_square_sum(frame.sigma_px));
@@ -115,7 +115,7 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
       squares += shape[i] * shape[i];
     }
     if (!(squares > 0)) continue;
-    const double ratio = std::max(sum / squares / star.signal_e, least_ratio);
+    const double ratio = std::max(sum / squares / star.signal_e, min_ratio);
     measured.push_back(std::log(ratio));
     all.push_back(std::log(ratio));
   }

@@ -9,16 +9,16 @@
 namespace dmise {
 namespace {
 
-constexpr double most_outside = 0.35;  // of the frame's edge, of a trail whose middle is beyond
+constexpr double max_outside = 0.35;   // of the frame's edge, of a trail whose middle is beyond
 constexpr int step_px = 2;             // between the places of a scan
 constexpr int same_trail = 16;         // steps in which trails hardly differ
-constexpr double least_read_px = 8.0;  // of a trail, also of a shorter one
+constexpr double min_read_px = 8.0;    // of a trail, also of a shorter one
 constexpr int longest_read_px = 4000;  // longer ones would take the search beyond its bound
 
 /// The nearest pixel of a coordinate above -65536, faster than std::lround.
 int nearest(double px) { return int(px + 65536.5) - 65536; }
 
-int samples_of(const Trail& t) { return int(std::round(std::max(t.length_px, least_read_px))); }
+int samples_of(const Trail& t) { return int(std::round(std::max(t.length_px, min_read_px))); }
 
 /// Variances of sums of 0, 1, .. pixels of a filtered frame along a line, in that of one pixel.
 std::vector<double> variances_of_sums(int most, double sigma_px) {
@@ -36,8 +36,8 @@ TrailScan::TrailScan(const Scene& scene, const ResidualFrame& residual)
       longest_px_(scene.stars.longest_trail_px()),
       variance_(variances_of_sums(longest_read_px, scene.sigma_px)) {
   for (const PixelPosition& t : scene.stars.trails_over_frame()) {
-    beside_px_.x_px = std::max(beside_px_.x_px, most_outside * std::abs(t.x_px));
-    beside_px_.y_px = std::max(beside_px_.y_px, most_outside * std::abs(t.y_px));
+    beside_px_.x_px = std::max(beside_px_.x_px, max_outside * std::abs(t.x_px));
+    beside_px_.y_px = std::max(beside_px_.y_px, max_outside * std::abs(t.y_px));
   }
 }
 
@@ -113,10 +113,10 @@ void TrailScan::score_row(double x, double y, const Trail& t, std::span<float> s
 double TrailScan::reads_of_peaks() const {
   const double px = (scene_.counts.columns + 2 * beside_px_.x_px) *
                     (scene_.counts.rows + 2 * beside_px_.y_px) / (step_px * step_px);
-  return px * std::max(least_read_px, longest_px_);
+  return px * std::max(min_read_px, longest_px_);
 }
 
-std::vector<TrailPlace> TrailScan::peaks(double least_snr) const {
+std::vector<TrailPlace> TrailScan::peaks(double min_snr) const {
   constexpr double by_steps = 0.8;  // of a score, that a place between those of the scan has there
   const double left = -beside_px_.x_px, top = -beside_px_.y_px;
   const int wide = int((scene_.counts.columns - 2 * left) / step_px) + 1,
@@ -129,7 +129,7 @@ std::vector<TrailPlace> TrailScan::peaks(double least_snr) const {
       const Trail t = scene_.star_trail(x + same_trail / 2 * step_px, y);
       score_row(x, y, t, {row(j) + i, std::size_t(std::min(same_trail, wide - i))});
     }
-  const auto least = float(by_steps * least_snr);
+  const auto least = float(by_steps * min_snr);
   std::vector<TrailPlace> places;
   for (int j = 0; j < high; ++j)
     for (int i = 0; i < wide; ++i) {
@@ -147,7 +147,7 @@ std::vector<TrailPlace> TrailScan::peaks(double least_snr) const {
 }
 
 double TrailScan::climb(TrailPlace& place) const {
-  constexpr int most_steps = 40;
+  constexpr int max_steps = 40;
   constexpr std::array<std::array<double, 2>, 6> moves = {
       {{1, 0}, {-1, 0}, {0, 0.7}, {0, -0.7}, {3, 0}, {-3, 0}}};
   const auto score = [&](double x, double y) { return score_at(x, y, scene_.star_trail(x, y)); };
@@ -155,7 +155,7 @@ double TrailScan::climb(TrailPlace& place) const {
   const double angle = scene_.star_trail(place.x_px, place.y_px).angle_rad;
   const double c = std::cos(angle), s = std::sin(angle);
   int steps = 0;
-  while (steps < most_steps) {
+  while (steps < max_steps) {
     ++steps;
     TrailPlace best = place;
     for (const auto& [along, across] : moves) {
@@ -167,7 +167,7 @@ double TrailScan::climb(TrailPlace& place) const {
     if (!(best.score > place.score)) break;
     place = best;
   }
-  return steps * double(moves.size()) * std::max(least_read_px, longest_px_);
+  return steps * double(moves.size()) * std::max(min_read_px, longest_px_);
 }
 
 TrailScan::Part TrailScan::part_of(const Trail& t, double from_px, double to_px) const {

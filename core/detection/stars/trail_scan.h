@@ -22,9 +22,9 @@ class TrailScan {
  public:
   TrailScan(const Scene& scene, const ResidualFrame& residual);
 
-  /// Places with the highest score around them, of at least about `least_snr`. They may be beside
+  /// Places with the highest score around them, of at least about `min_snr`. They may be beside
   /// the frame.
-  std::vector<TrailPlace> peaks(double least_snr) const;
+  std::vector<TrailPlace> peaks(double min_snr) const;
   /// Pixels that `peaks` reads.
   double reads_of_peaks() const;
   /// Moves to the highest score around, by steps along and across the trail. Returns how many

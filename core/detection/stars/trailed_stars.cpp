@@ -13,14 +13,14 @@
 namespace dmise {
 namespace {
 
-constexpr double least_trail_sigmas = 5.0;  // length from which on trails are told from points
+constexpr double min_trail_sigmas = 5.0;    // length from which on trails are told from points
 constexpr double far_trail_sigmas = 20.0;   // from which on no short streak looks like one
 constexpr double point_like_sigmas = 16.0;  // length up to which a bright point may look like one
 constexpr double brightness_error = 0.12;   // of a trail's brightness along it
 constexpr double too_dark_sigmas = 3.5;     // by which a part of a trail may be too dark
 constexpr double tolerance = 0.15;          // of a trail's light, beyond which pixels are outliers
 constexpr double first_snr = 8.0, last_snr = 5.0;
-constexpr std::size_t least_pixels = 12;  // of a fit
+constexpr std::size_t min_pixels = 12;  // of a fit
 
 // Bound of a search, so that it takes no longer than the frame's detection without it: pixels read,
 // for each pixel of the frame. A pixel costs more in a step of a fit.
@@ -37,7 +37,7 @@ FitSettings settings(const Psf& psf, const std::vector<FitPixel>& pixels) {
   return {.psf = psf,
           .model_error = ResidualFrame::light_error,
           .background_sigma_e = background_sigma_e(pixels.front()),
-          .most_steps = 15,
+          .max_steps = 15,
           .settled_chi2 = 0.01};
 }
 
@@ -63,18 +63,18 @@ class TrailSearch {
   bool is_spent() const { return reads_left_ < 0; }
 
   /// Finds stars in what is left of the frame, the brightest first.
-  void find(double least_snr) {
+  void find(double min_snr) {
     constexpr double much_darker = 0.8;  // than it was before stars were subtracted beside it
     reads_left_ -= scan_.reads_of_peaks();
     if (is_spent()) return;
     Queue queue;
-    for (const TrailPlace& place : scan_.peaks(least_snr)) queue.push(place);
+    for (const TrailPlace& place : scan_.peaks(min_snr)) queue.push(place);
     while (!queue.empty() && !is_spent()) {
       TrailPlace place = queue.top();
       queue.pop();
       const double before = place.score;
       reads_left_ -= scan_.climb(place);
-      if (place.score < least_snr) continue;
+      if (place.score < min_snr) continue;
       if (place.score < much_darker * before)
         queue.push(place);
       else
@@ -133,7 +133,7 @@ class TrailSearch {
     constexpr int rounds = 3;
     if (!is_bounded(scene_, start)) return std::nullopt;
     const auto all = residual_.pixels_around(start, 2.5 * scene_.sigma_px + 0.5);
-    if (all.size() < least_pixels) return std::nullopt;
+    if (all.size() < min_pixels) return std::nullopt;
     auto pixels = all;
     std::optional<TrailFit> fit;
     Trail trail = start;
@@ -148,7 +148,7 @@ class TrailSearch {
       trail = t;
       if (round + 1 == rounds) break;
       pixels = without_outliers(all, {&trail, 1}, fit->background_e, tolerance, psf);
-      if (pixels.size() < least_pixels || pixels.size() < all.size() / 3) return std::nullopt;
+      if (pixels.size() < min_pixels || pixels.size() < all.size() / 3) return std::nullopt;
     }
     const Trail here = scene_.star_trail(trail.x_px, trail.y_px);
     fit->trails[0].length_px = here.length_px;
@@ -200,7 +200,7 @@ class TrailSearch {
     const auto all = residual_.pixels_around(t, 3 * scene_.sigma_px + 0.5);
     // Another source before the trail does not make it another shape.
     const auto pixels = without_outliers(all, {&t, 1}, 0.0, tolerance, psf);
-    if (pixels.size() < least_pixels || 10 * pixels.size() < 6 * all.size()) return true;
+    if (pixels.size() < min_pixels || 10 * pixels.size() < 6 * all.size()) return true;
     const auto fit = [&](const Trail& start, unsigned free) {
       return fit_trails(pixels, {start}, {free}, settings(psf, pixels));
     };
@@ -229,7 +229,7 @@ class TrailSearch {
 }  // namespace
 
 bool stars_trail(const Scene& scene) {
-  return trail_in_middle_px(scene) > least_trail_sigmas * scene.sigma_px;
+  return trail_in_middle_px(scene) > min_trail_sigmas * scene.sigma_px;
 }
 
 bool stars_trail_far(const Scene& scene) {

@@ -9,9 +9,9 @@
 namespace dmise {
 namespace {
 
-constexpr int most_half_px = 32;         // of the profile
-constexpr double least_broadness = 1.3;  // to the width of the PSF
-constexpr double least_pixel_snr = 4.0;
+constexpr int max_half_px = 32;        // of the profile
+constexpr double min_broadness = 1.3;  // to the width of the PSF
+constexpr double min_pixel_snr = 4.0;
 
 /// Principal axis of the points within `half_px` of a line.
 Line axis_of(const std::vector<Point>& points, const Line& line, double half_px) {
@@ -39,15 +39,15 @@ Extent extent_on(const std::vector<Point>& points, const Line& line, double half
   return extent;
 }
 
-/// Median light of pixels along lines beside a line, from `-most_half_px` on; NaN where too few are
+/// Median light of pixels along lines beside a line, from `-max_half_px` on; NaN where too few are
 /// usable.
 std::vector<double> profile_across(const Scene& scene, const Line& line, const Extent& extent) {
-  constexpr int most_places = 200;
-  constexpr std::size_t least_places = 12;
+  constexpr int max_places = 200;
+  constexpr std::size_t min_places = 12;
   const Extent seen = in_frame(scene, line, extent);
-  const int step = std::max(1, (seen.to - seen.from) / most_places);
+  const int step = std::max(1, (seen.to - seen.from) / max_places);
   std::vector<double> profile;
-  for (int off = -most_half_px; off <= most_half_px; ++off) {
+  for (int off = -max_half_px; off <= max_half_px; ++off) {
     std::vector<double> light;
     for (int k = seen.from; k <= seen.to; k += step) {
       const Point at = line.at(k, off);
@@ -55,14 +55,14 @@ std::vector<double> profile_across(const Scene& scene, const Line& line, const E
       if (scene.contains(x, y) && scene.is_usable(x, y))
         light.push_back(double(scene.pixel(x, y).signal_e));
     }
-    profile.push_back(light.size() < least_places ? std::nan("") : median_of(std::move(light)));
+    profile.push_back(light.size() < min_places ? std::nan("") : median_of(std::move(light)));
   }
   return profile;
 }
 
 /// What half of a profile's greatest light is between.
 struct Sides {
-  double first_px = 0.0, last_px = 0.0, most_e = 0.0;
+  double first_px = 0.0, last_px = 0.0, max_e = 0.0;
   double width_px() const { return last_px - first_px; }
 };
 
@@ -70,14 +70,14 @@ std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_p
   Sides sides;
   int top = -1;
   for (int i = 0; i < int(profile.size()); ++i)
-    if (std::abs(i - most_half_px) <= reach_px && profile[std::size_t(i)] > sides.most_e) {
-      sides.most_e = profile[std::size_t(i)];
+    if (std::abs(i - max_half_px) <= reach_px && profile[std::size_t(i)] > sides.max_e) {
+      sides.max_e = profile[std::size_t(i)];
       top = i;
     }
   if (top < 0) return std::nullopt;
   // From outside, because a hollow one may have less than half in its middle.
   const auto side = [&](int way) -> std::optional<double> {
-    const double half = 0.5 * sides.most_e;
+    const double half = 0.5 * sides.max_e;
     std::optional<double> found;
     int dark = 0;
     for (int i = top; i >= 0 && i < int(profile.size()) && dark < 4; i += way) {
@@ -91,7 +91,7 @@ std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_p
       const int next = i + way;
       if (next < 0 || next >= int(profile.size())) return std::nullopt;
       const double beyond = profile[std::size_t(next)];
-      if (beyond < half) found = i + way * (here - half) / (here - beyond) - most_half_px;
+      if (beyond < half) found = i + way * (here - half) / (here - beyond) - max_half_px;
     }
     return found;
   };
@@ -107,8 +107,8 @@ double spread_px(const std::vector<double>& profile, const Sides& sides) {
   const double middle = 0.5 * (sides.first_px + sides.last_px), reach = 1.2 * sides.width_px();
   double sum = 0.0, square = 0.0;
   for (int i = 0; i < int(profile.size()); ++i) {
-    const double off = i - most_half_px - middle, light = profile[std::size_t(i)];
-    if (!(std::abs(off) <= reach) || !(light > 0.1 * sides.most_e)) continue;
+    const double off = i - max_half_px - middle, light = profile[std::size_t(i)];
+    if (!(std::abs(off) <= reach) || !(light > 0.1 * sides.max_e)) continue;
     sum += light;
     square += light * off * off;
   }
@@ -122,11 +122,11 @@ bool has_no_gap(const std::vector<double>& profile, const Sides& sides, double f
   const double apart = sides.width_px() / std::sqrt(fwhm_px * fwhm_px + sampling_px2) - 1;
   if (apart < least_apart) return false;
   const double of_pair = 2 * std::exp2(-apart * apart) / (1 + std::exp2(-4 * apart * apart));
-  double least_e = sides.most_e;
+  double min_e = sides.max_e;
   for (int i = int(std::ceil(sides.first_px + fwhm_px / 2));
        i <= int(std::floor(sides.last_px - fwhm_px / 2)); ++i)
-    least_e = std::min(least_e, profile[std::size_t(i + most_half_px)]);
-  return least_e > 0.5 * (1 + of_pair) * sides.most_e;
+    min_e = std::min(min_e, profile[std::size_t(i + max_half_px)]);
+  return min_e > 0.5 * (1 + of_pair) * sides.max_e;
 }
 
 /// Whether there is neither light nor a lack of it beside a line, as there is beside an edge.
@@ -137,11 +137,11 @@ bool is_alone(const std::vector<double>& profile, const Sides& sides) {
     double sum = 0.0;
     int count = 0;
     for (int k = 0; k < 2 + int(0.5 * sides.width_px()); ++k, ++count) {
-      const int i = int(std::lround(from)) + way * k + most_half_px;
+      const int i = int(std::lround(from)) + way * k + max_half_px;
       if (i < 0 || i >= int(profile.size())) return false;
       sum += profile[std::size_t(i)];
     }
-    if (!(std::abs(sum) < most_beside * count * sides.most_e)) return false;
+    if (!(std::abs(sum) < most_beside * count * sides.max_e)) return false;
   }
   return true;
 }
@@ -160,8 +160,8 @@ std::optional<BroadLine> broad_line(const Scene& scene, const std::vector<Point>
     if (broad.extent.to <= broad.extent.from) return std::nullopt;
     const auto profile = profile_across(scene, broad.line, broad.extent);
     const auto sides = sides_of(profile, half_px);
-    if (!sides || sides->width_px() < least_broadness * fwhm_px) return std::nullopt;
-    if (sides->most_e < least_pixel_snr * scene.noise_e_at(broad.line.x, broad.line.y))
+    if (!sides || sides->width_px() < min_broadness * fwhm_px) return std::nullopt;
+    if (sides->max_e < min_pixel_snr * scene.noise_e_at(broad.line.x, broad.line.y))
       return std::nullopt;
     if (!is_alone(profile, *sides)) return std::nullopt;
     const double middle = 0.5 * (sides->first_px + sides->last_px);

@@ -75,7 +75,7 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
 double wings_error(std::size_t clipped, double sigma_px) {
   const double radius_in_sigmas = std::sqrt(double(clipped) / pi) / sigma_px;
   return std::clamp(detection_limits::wings_error * radius_in_sigmas * radius_in_sigmas,
-                    detection_limits::least_wings_error, detection_limits::most_wings_error);
+                    detection_limits::min_wings_error, detection_limits::max_wings_error);
 }
 
 /// Fits the wings alone. The flux is that of the wings times a factor given by the PSF, with an
@@ -120,9 +120,9 @@ class Candidate {
   /// Uniform trail of the same light and spread.
   const Trail& light() const { return light_; }
 
-  TrailFit fit(const Psf& psf, Trail start, unsigned free, int most_steps,
+  TrailFit fit(const Psf& psf, Trail start, unsigned free, int max_steps,
                std::optional<double> good_enough_sigmas = std::nullopt) const {
-    FitSettings fit_settings = comparison(psf, most_steps);
+    FitSettings fit_settings = comparison(psf, max_steps);
     fit_settings.good_enough_sigmas = good_enough_sigmas;
     return fit_trails(around_.usable, {std::move(start)}, {free}, fit_settings);
   }
@@ -147,22 +147,22 @@ class Candidate {
   /// The source, empty also if it is too faint.
   std::optional<Source> bright_source(const Trail& start, bool streak) const {
     auto bright = source(start, streak);
-    if (bright && bright->snr() < detection_limits::least_snr) bright.reset();
+    if (bright && bright->snr() < detection_limits::min_snr) bright.reset();
     return bright;
   }
 
-  /// The source, empty also if it does not stand out from the noise by `least_snr`.
-  std::optional<Source> significant_source(const Trail& start, double least_snr) const {
+  /// The source, empty also if it does not stand out from the noise by `min_snr`.
+  std::optional<Source> significant_source(const Trail& start, double min_snr) const {
     auto significant = source(start, start.length_px > 0.0);
     if (!significant) return significant;
     const Trail& t = significant->trail();
-    least_snr *= crowding(*scene_.flat, t);
+    min_snr *= crowding(*scene_.flat, t);
     // A star that is brighter than expected, by scintillation or by nature.
     const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
     const bool may_be_star = t.length_px < 6 * scene_.sigma_px &&
                              scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e);
-    if (may_be_star || (!is_saturated() && (template_snr(scene_, t) < least_snr ||
-                                            significant->snr() < fit_keeps * least_snr)))
+    if (may_be_star || (!is_saturated() && (template_snr(scene_, t) < min_snr ||
+                                            significant->snr() < fit_keeps * min_snr)))
       significant.reset();
     return significant;
   }
@@ -176,10 +176,10 @@ class Candidate {
   Psf nearest_gaussian() const { return scene_.psf.sigma_at({light_.x_px, light_.y_px}); }
 
  private:
-  FitSettings comparison(const Psf& psf, int most_steps) const {
+  FitSettings comparison(const Psf& psf, int max_steps) const {
     return {.psf = psf,
             .model_error = model_error_,
-            .most_steps = most_steps,
+            .max_steps = max_steps,
             .settled_chi2 = comparison_settled_chi2};
   }
 
@@ -193,10 +193,10 @@ class Candidate {
 std::optional<Source> judge_without_stars(const Candidate& candidate) {
   const TrailFit as_point = candidate.as_point(), as_line = candidate.as_line();
   if (as_point.good(5.0) && as_point.deviance < as_line.deviance + detection_limits::line_margin)
-    return candidate.significant_source(as_point.trails[0], detection_limits::least_snr);
+    return candidate.significant_source(as_point.trails[0], detection_limits::min_snr);
   if (!candidate.is_line(as_line)) return std::nullopt;
   const Trail& line = as_line.trails[0];
-  return candidate.significant_source(line, least_streak_snr(line.length_px));
+  return candidate.significant_source(line, min_streak_snr(line.length_px));
 }
 
 /// The judgement by the shape of stars.
@@ -212,7 +212,7 @@ std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& can
     as_star = candidate.fit(candidate.psf(), as_star.trails[0], trail_place, 8, surely_star_sigmas);
     if (as_star.good(surely_star_sigmas)) return std::nullopt;
   }
-  const bool stars_trail = star.length_px >= detection_limits::least_difference_px;
+  const bool stars_trail = star.length_px >= detection_limits::min_difference_px;
   TrailFit as_point;
   if (stars_trail) as_point = candidate.as_point();
   const bool may_be_point =
@@ -238,7 +238,7 @@ std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& can
   if (!source || (source->at_edge && source->trail().length_px < star.length_px))
     return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
-  double tolerance_px = std::max(detection_limits::least_difference_px, 4 * sigma_length_px);
+  double tolerance_px = std::max(detection_limits::min_difference_px, 4 * sigma_length_px);
   if (candidate.is_saturated()) tolerance_px += 2 * scene.sigma_px;  // wings show ends less sharply
   if (moves_like_star(scene, *source, star, tolerance_px) || is_wide_body(scene, *source) ||
       !beats_stars(scene, *source) || is_of_overlapping_trails(scene, *source))

@@ -13,15 +13,15 @@
 namespace dmise {
 namespace {
 
-constexpr double least_beyond_px = 24.0;  // beyond an end, where light may be its own
-constexpr double negligible = 20.0;       // logarithm of odds
-constexpr int turns = 3;                  // to each side, by so much at the ends:
+constexpr double min_beyond_px = 24.0;  // beyond an end, where light may be its own
+constexpr double negligible = 20.0;     // logarithm of odds
+constexpr int turns = 3;                // to each side, by so much at the ends:
 constexpr double turn_px = 0.6;
-constexpr int most_refits = 3;
-constexpr double most_reduced_chi2 = 2.0;
-constexpr double worth_a_fit = 6.0;  // logarithm of odds that a better line may gain
-constexpr double least_gain = 6.0;   // of deviance: by chance, the best of 20 places has 2 ln 20
-constexpr double most_residual2 = 16.0;  // that a pixel counts, over its variance
+constexpr int max_refits = 3;
+constexpr double max_reduced_chi2 = 2.0;
+constexpr double worth_a_fit = 6.0;     // logarithm of odds that a better line may gain
+constexpr double min_gain = 6.0;        // of deviance: by chance, the best of 20 places has 2 ln 20
+constexpr double max_residual2 = 16.0;  // that a pixel counts, over its variance
 
 bool has_faint_ends(const Source& source) {
   return source.streak && !source.saturated &&
@@ -35,14 +35,14 @@ template <class Visit>
 void for_pairs_of_ends(const Scene& scene, const Source& source, const Visit& visit) {
   const Trail& t = source.trail();
   const bool sloped = (source.free & trail_slope) != 0;
-  const double least_px = 3 * scene.sigma_px;
+  const double min_px = 3 * scene.sigma_px;
   for (int turn = -turns; turn <= turns; ++turn) {
     Trail line = t;
     line.angle_rad += 2 * turn * turn_px / std::max(t.length_px, 4.0);
-    const auto ends = ends_along(scene, line, std::max(least_beyond_px, t.length_px));
+    const auto ends = ends_along(scene, line, std::max(min_beyond_px, t.length_px));
     for (std::size_t i = 0; i < ends.size(); ++i)
       for (std::size_t j = i + 1; j < ends.size(); ++j)
-        if (ends[j].along_px - ends[i].along_px >= least_px)
+        if (ends[j].along_px - ends[i].along_px >= min_px)
           visit(line, LineBetween(ends[i], ends[j], sloped), ends[i].width_px * ends[j].width_px);
   }
 }
@@ -90,7 +90,7 @@ double gain_over(const Scene& scene, const Source& better, const Source& than) {
       const double model = light[i];
       const double variance = p.variance_e2 + std::max(model, 0.0);
       const double residual = p.signal_e - model - source.fit.background_e;
-      sum += std::min(residual * residual / variance, most_residual2) + std::log(variance);
+      sum += std::min(residual * residual / variance, max_residual2) + std::log(variance);
     }
     return sum;
   };
@@ -100,7 +100,7 @@ double gain_over(const Scene& scene, const Source& better, const Source& than) {
 /// Returns the least gain of deviance by a fit with other ends. If what is added to a streak or
 /// taken from it is as bright as the rest, the gain is the square of its SNR, with twice that SNR
 /// as deviation. Light of a gain that is lower by three deviations belongs to something else.
-double least_gain_of(const Source& other, const Source& than) {
+double min_gain_of(const Source& other, const Source& than) {
   const double length_px = std::max(other.trail().length_px, 1.0);
   const double snr =
       other.snr() *
@@ -135,12 +135,12 @@ std::optional<Source> refitted(const Scene& scene, const Source& source,
   std::vector<Source> bases{source};
   if (auto straight = straightened(scene, source)) bases.push_back(std::move(*straight));
   std::optional<Source> best;
-  double most = least_gain;
+  double most = min_gain;
   for (const Source& base : bases) {
     const auto start = other_ends(scene, base);
     if (!start) continue;
     auto other = fit_source(scene, *start, true, 0.0, false, source.free | trail_line);
-    if (!other || other->fit.reduced_chi2() > most_reduced_chi2 ||
+    if (!other || other->fit.reduced_chi2() > max_reduced_chi2 ||
         other->trail().length_px < 3 * scene.sigma_px)
       continue;
     const Trail& t = other->trail();
@@ -149,7 +149,7 @@ std::optional<Source> refitted(const Scene& scene, const Source& source,
       continue;  // behind it is another one
     if (reaches_another(scene, *other, source, others)) continue;
     const double gain = gain_over(scene, *other, source);
-    if (!(gain > std::max(most, least_gain_of(*other, source)))) continue;
+    if (!(gain > std::max(most, min_gain_of(*other, source)))) continue;
     most = gain;
     best = std::move(other);
   }
@@ -162,12 +162,12 @@ Source with_likelier_ends(const Scene& scene, Source source, std::span<const Sou
   if (has_faint_ends(source) && !source.beside && !(source.free & trail_sagitta)) {
     // It was found along a bend, which was not fitted: noise may have made it.
     auto straight = straightened(scene, source);
-    if (straight && gain_over(scene, *straight, source) > -least_gain) {
+    if (straight && gain_over(scene, *straight, source) > -min_gain) {
       straight->at_edge |= source.at_edge;
       source = std::move(*straight);
     }
   }
-  for (int refit = 0; refit < most_refits && has_faint_ends(source) && !source.beside; ++refit) {
+  for (int refit = 0; refit < max_refits && has_faint_ends(source) && !source.beside; ++refit) {
     auto other = refitted(scene, source, others);
     if (!other) break;
     other->at_edge |= source.at_edge;

@@ -16,13 +16,13 @@
 namespace dmise {
 namespace {
 
-constexpr double least_share = 0.4;    // of a trail that is not hidden
+constexpr double min_share = 0.4;      // of a trail that is not hidden
 constexpr double chain_px = 40.0;      // longest row of stars, without their trails
 constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
 // Of SNR^2, by which a point, and a streak, must be longer than was seen.
-constexpr double least_gain = 10.0, least_gain_of_streak = 1.0;
+constexpr double min_gain = 10.0, min_gain_of_streak = 1.0;
 constexpr double short_in_sigmas = 12.0;
-constexpr int most_failures = 30;  // of fits: a frame of so many structures has no faint streaks
+constexpr int max_failures = 30;  // of fits: a frame of so many structures has no faint streaks
 constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
 constexpr double sum_misses_px = 32.0;  // length up to which the sum may miss so much
@@ -33,11 +33,11 @@ constexpr double star_ratio = 1.2;  // of SNRs, by which a star's trail explains
 constexpr double fitted_share = 0.7;
 // Of the least SNR: the fit also fits the sky, which costs some; of a faint patch it costs more.
 constexpr double sky_share = 0.85;
-constexpr double most_chi2 = 2.0;    // reduced: with more it is no line of light
+constexpr double max_chi2 = 2.0;     // reduced: with more it is no line of light
 constexpr double piece_share = 0.9;  // of a streak's length, at most, that a piece of it has
 constexpr double arc_px = 100.0;     // from which length on a bend shows at any SNR
 constexpr double bright_arc_px = 15.0, bright_arc_snr = 12.0;  // and with this SNR, as brightness
-constexpr double least_climb_snr = 3.0;  // from which on a climb moves ends and bend, too
+constexpr double min_climb_snr = 3.0;  // from which on a climb moves ends and bend, too
 // Scatter over noise, and share of hidden pixels, that any cell has by chance.
 constexpr double usual_scatter = 0.05, usual_hidden = 0.1;
 // Least SNR of 16 px, and by how much it rises with each doubling, to 64 px: longer lines are tried
@@ -103,13 +103,13 @@ double star_snr_on(const FilteredFrame& frame, const Trail& trail, Trail star) {
 
 bool is_streak(const Scene& scene, const Source& source) {
   const Trail& t = source.trail();
-  if (source.snr() < sky_share * least_streak_snr(t.length_px)) return false;
-  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > most_chi2) return false;
+  if (source.snr() < sky_share * min_streak_snr(t.length_px)) return false;
+  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > max_chi2) return false;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
   if (may_be_row_of_stars(scene, t, chain_px) &&
       (is_wide_body(scene, source) || !beats_stars(scene, source)))
     return false;
-  return !moves_like_star(scene, source, star, detection_limits::least_difference_px + 1);
+  return !moves_like_star(scene, source, star, detection_limits::min_difference_px + 1);
 }
 
 /// The slices of a trail's line between which a light of `e_per_px` is not there.
@@ -160,7 +160,7 @@ Source with_hidden_light(const Scene& scene, const Scene& seen, Source source) {
   longer.length_px += gaps.first_px + gaps.last_px;
   longer.flux_e *= longer.length_px / t.length_px;
   auto whole = fitted(scene, longer, source.snr());
-  if (whole && whole->snr() > source.snr() && whole->fit.reduced_chi2() < most_chi2 &&
+  if (whole && whole->snr() > source.snr() && whole->fit.reduced_chi2() < max_chi2 &&
       whole->trail().length_px < longer.length_px + 4 * scene.sigma_px)
     return std::move(*whole);
   add_errors_of_hidden_ends(seen, source);
@@ -176,7 +176,7 @@ Trail best_line_through(const FilteredFrame& frame, const Trail& place, double s
   double most = 0.0;
   for (int k = 0; k < directions; ++k) {
     line.angle_rad = pi * k / directions;
-    const Trail trial = climbed(frame, line, least_climb_snr);
+    const Trail trial = climbed(frame, line, min_climb_snr);
     const double snr = snr_along(frame, trial);
     if (!(snr > most)) continue;
     most = snr;
@@ -190,15 +190,15 @@ std::optional<Source> fitted_longer(const Scene& scene, const FilteredFrame& fra
                                     const Source& source, Trail start, bool turned,
                                     double known_snr) {
   const Trail& known = source.trail();
-  const double least_px = (source.streak ? 0.5 : 2.0) * scene.sigma_px;
-  if (start.length_px < known.length_px + least_px) return std::nullopt;
+  const double min_px = (source.streak ? 0.5 : 2.0) * scene.sigma_px;
+  if (start.length_px < known.length_px + min_px) return std::nullopt;
   if (source.streak && !turned &&
       gap_in(scene, start, known.flux_e / std::max(known.length_px, 1.0)))
     return std::nullopt;
   const double snr = snr_along(frame, start);
   const double gain = turned ? std::pow(template_snr(scene, start), 2) - known_snr * known_snr
                              : snr * snr - std::pow(snr_along(frame, known), 2);
-  if (gain < (turned ? least_gain : least_gain_of_streak)) return std::nullopt;
+  if (gain < (turned ? min_gain : min_gain_of_streak)) return std::nullopt;
   start.flux_e = known.flux_e * start.length_px / std::max(known.length_px, 2 * scene.sigma_px);
   auto fit = fitted(scene, start, snr);
   if (fit && (fit->trail().length_px <= known.length_px || fit->snr() <= source.snr())) fit.reset();
@@ -216,8 +216,8 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
   const bool is_short = known.length_px < short_in_sigmas * scene.sigma_px;
   std::optional<Source> fit;
   if (source.streak)
-    fit = fitted_longer(scene, frame, source, climbed(frame, known, least_climb_snr), false,
-                        known_snr);
+    fit =
+        fitted_longer(scene, frame, source, climbed(frame, known, min_climb_snr), false, known_snr);
   if (!fit && is_short)
     fit = fitted_longer(scene, frame, source, best_line_through(frame, known, scene.sigma_px), true,
                         known_snr);
@@ -232,14 +232,14 @@ double crowding(const FilteredFrame& frame, const Trail& trail) {
   return scatter * (1.0 + std::max(0.0, double(cell.hidden) - usual_hidden));
 }
 
-double least_streak_snr(double length_px) {
+double min_streak_snr(double length_px) {
   return short_streak_snr +
          snr_per_doubling * std::clamp(std::log2(length_px / shortest_px), 0.0, 2.0);
 }
 
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
-  constexpr int most_rounds = 4;
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 4;
+  for (int round = 0; round < max_rounds; ++round) {
     auto more = longer(scene, frame, source);
     if (!more) return;
     source = std::move(*more);
@@ -274,14 +274,13 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     tried.push_back(trail);
     const LineSum line = sum_along(frame, trail);
     double snr = line.sum / line.noise;
-    if (line.samples < least_share * line.slices) continue;
-    if (snr < least_streak_snr(trail.length_px)) {
+    if (line.samples < min_share * line.slices) continue;
+    if (snr < min_streak_snr(trail.length_px)) {
       // The sum of a short line misses light beside its ends.
       const double misses = sum_misses_snr * std::min(1.0, sum_misses_px / trail.length_px);
-      if (trail.length_px > template_px || snr < least_streak_snr(trail.length_px) - misses)
-        continue;
+      if (trail.length_px > template_px || snr < min_streak_snr(trail.length_px) - misses) continue;
       const TemplateMatch match = best_template(seen, trail);
-      if (match.snr < least_streak_snr(match.trail.length_px)) continue;
+      if (match.snr < min_streak_snr(match.trail.length_px)) continue;
       trail = match.trail;
       snr = match.snr;
     }
@@ -289,7 +288,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     const float noise_e = std::sqrt(scene.pixel_around(trail.x_px, trail.y_px).variance_e2);
     trail.flux_e = per_px * noise_e * trail.length_px;
     const ParallelLines near = parallel_lines(frame, turned, trail, band);
-    if (snr < near.median + least_streak_snr(trail.length_px) * near.scatter *
+    if (snr < near.median + min_streak_snr(trail.length_px) * near.scatter *
                                 crowding(frame, trail) * rise_among_trails(scene, trail))
       continue;
     const double star_snr = star_snr_on(frame, trail, star);
@@ -299,7 +298,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     if (source && is_streak(scene, *source))
       for (Source& piece : pieces(scene, std::move(*source)))
         found.push_back(with_hidden_light(scene, seen, std::move(piece)));
-    else if (++failures == most_failures)
+    else if (++failures == max_failures)
       break;
   }
   return found;

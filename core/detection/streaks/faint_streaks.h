@@ -14,7 +14,7 @@ void extend(const Scene& scene, const FilteredFrame& frame, Source& source);
 /// Returns the least SNR of a trail of this length at which noise alone gives at most 0.1 of them
 /// in a frame of 8.3 Mpx. More lines of greater length fit into a frame, from 40 px on also bent
 /// ones.
-double least_streak_snr(double length_px);
+double min_streak_snr(double length_px);
 
 /// Returns the factor by which the least SNR of a trail is raised where more than a tenth of the
 /// frame is hidden or the sky scatters more than noise: fainter stars that were not hidden give

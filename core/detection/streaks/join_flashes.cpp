@@ -13,8 +13,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_candidates = 150;
-constexpr std::size_t least_flashes = 3;
+constexpr std::size_t max_candidates = 150;
+constexpr std::size_t min_flashes = 3;
 constexpr double spacing_share = 0.04, spacing_px = 1.5;     // by which spacings may differ
 constexpr double length_share = 0.25, length_px = 2.0;       // by which lengths may differ
 constexpr double most_brighter = 3.0;                        // of flashes' light a px
@@ -77,7 +77,7 @@ bool is_near(double a, double b, double share, double px) {
 /// than those within, which are alike.
 bool are_even(std::span<const RowFlash> pieces) {
   const std::size_t n = pieces.size();
-  if (n < least_flashes) return false;
+  if (n < min_flashes) return false;
   const double spacing = pieces[2].first_px - pieces[1].first_px;
   const double length = pieces[1].length_px();
   if (spacing - length < spacing_px) return false;
@@ -106,7 +106,7 @@ bool is_cut(const RowFlash& piece, const RowFlash& whole) {
 
 /// Whether the exposure has cut the first or the last: a train of objects has equal streaks.
 bool is_no_train(std::span<const RowFlash> flashes) {
-  return flashes.size() >= least_flashes &&
+  return flashes.size() >= min_flashes &&
          (is_cut(flashes.front(), flashes[1]) || is_cut(flashes.back(), flashes[1]));
 }
 
@@ -114,14 +114,14 @@ bool is_no_train(std::span<const RowFlash> flashes) {
 std::vector<RowFlash> row_on(const RowAxis& axis, double reach_px,
                              const std::vector<Source>& sources) {
   std::vector<RowFlash> all, best;
-  for (std::size_t i = 0; i < sources.size() && i < most_candidates; ++i) {
+  for (std::size_t i = 0; i < sources.size() && i < max_candidates; ++i) {
     if (!may_flash(sources[i])) continue;
     if (const auto piece = piece_on(axis, sources[i], i, off_line_px + off_line_share * reach_px))
       all.push_back(*piece);
   }
   std::ranges::sort(all, {}, &RowFlash::middle_px);
-  for (std::size_t a = 0; a + least_flashes <= all.size(); ++a)
-    for (std::size_t b = all.size(); b >= a + least_flashes && b - a > best.size(); --b) {
+  for (std::size_t a = 0; a + min_flashes <= all.size(); ++a)
+    for (std::size_t b = all.size(); b >= a + min_flashes && b - a > best.size(); --b) {
       const std::span row(all.begin() + long(a), b - a);
       if (are_even(row) && is_no_train(row)) best.assign(row.begin(), row.end());
     }
@@ -222,7 +222,7 @@ Source joined(const Scene& scene, const RowAxis& axis, std::span<const RowFlash>
 std::pair<RowAxis, std::vector<RowFlash>> best_row(const Scene& scene,
                                                    const std::vector<Source>& sources) {
   std::pair<RowAxis, std::vector<RowFlash>> best;
-  const std::size_t count = std::min(sources.size(), most_candidates);
+  const std::size_t count = std::min(sources.size(), max_candidates);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count; ++j) {
       const Trail &a = sources[i].trail(), &b = sources[j].trail();

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double least_step_px = 0.5, step_share = 0.125;
+constexpr double min_step_px = 0.5, step_share = 0.125;
 constexpr double slopes_inverse_variance = 3.0;  // of an even distribution from -1 to 1
 constexpr double edge_sigmas = 4.0;              // of the PSF, within which light fades at an end
 constexpr double across_sigmas = 2.5;            // within which pixels are used
@@ -61,7 +61,7 @@ std::vector<double> places_between(double first_px, double last_px, double half_
   for (double at = first_px; at <= last_px;) {
     out.push_back(at);
     const double distance_px = std::abs(std::abs(at) - half_length_px);
-    at += std::max(least_step_px, step_share * distance_px);
+    at += std::max(min_step_px, step_share * distance_px);
   }
   return out;
 }
@@ -73,10 +73,10 @@ double measured_to_px(const Scene& scene, const Trail& t, double side, double si
   if (!scene.unusable) return HUGE_VAL;
   double edge_px = end_px;
   while (has_values_at(scene, t, side * edge_px)) {
-    edge_px += least_step_px;
+    edge_px += min_step_px;
     if (edge_px > end_px + end_sigmas * sigma_px) return HUGE_VAL;
   }
-  for (double px = edge_px; px < edge_px + gap_sigmas * sigma_px; px += least_step_px)
+  for (double px = edge_px; px < edge_px + gap_sigmas * sigma_px; px += min_step_px)
     if (has_values_at(scene, t, side * px)) return HUGE_VAL;
   return edge_px;
 }

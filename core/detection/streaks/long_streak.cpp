@@ -19,14 +19,14 @@
 namespace dmise {
 namespace {
 
-constexpr int most_lines = 12;             // in one component
-constexpr int most_failures = 3;           // of lines in a row, before it is given up
+constexpr int max_lines = 12;              // in one component
+constexpr int max_failures = 3;            // of lines in a row, before it is given up
 constexpr double worth_another_px = 50.0;  // a shorter component is given up after one failed line
 constexpr int window_px = 16;              // step of growth
 constexpr double growth_snr = 4.0;         // to continue into the next window
 constexpr double gap_snr = 6.0;            // to continue beyond a gap
-constexpr double least_rise = 2.0;         // over the scatter of lines beside it, before a fit
-constexpr int most_rounds = 6;             // of fitting and growing
+constexpr double min_rise = 2.0;           // over the scatter of lines beside it, before a fit
+constexpr int max_rounds = 6;              // of fitting and growing
 
 Line line_through(const Point& a, const Point& b) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
@@ -72,8 +72,8 @@ struct PointLanes {
   }
 };
 
-/// The line with the most points, from pairs of distant points; empty below `least_px`.
-std::optional<Line> main_line(const std::vector<Point>& points, double width_px, double least_px) {
+/// The line with the most points, from pairs of distant points; empty below `min_px`.
+std::optional<Line> main_line(const std::vector<Point>& points, double width_px, double min_px) {
   const std::size_t anchors = std::min<std::size_t>(40, points.size());
   const PointLanes lanes(points);
   std::optional<Line> best;
@@ -82,7 +82,7 @@ std::optional<Line> main_line(const std::vector<Point>& points, double width_px,
     for (std::size_t b = a + 1; b < anchors; ++b) {
       const Point& p = points[a * (points.size() - 1) / (anchors - 1)];
       const Point& q = points[b * (points.size() - 1) / (anchors - 1)];
-      if (std::hypot(p.x - q.x, p.y - q.y) < least_px) continue;
+      if (std::hypot(p.x - q.x, p.y - q.y) < min_px) continue;
       const Line line = line_through(p, q);
       const double weight = lanes.within(line, width_px, most);
       if (weight > most) {
@@ -182,7 +182,7 @@ bool is_among_others(const Scene& scene, const Line& line, const Extent& extent,
   const Slice middle = slice_at(scene, line, (extent.from + extent.to) / 2, 0.0);
   if (middle.variance > 0 && level > detection_limits::even_snr_per_px * std::sqrt(middle.variance))
     return false;
-  return rise_above_neighbours(scene, trail_along(line, extent, level)) < least_rise;
+  return rise_above_neighbours(scene, trail_along(line, extent, level)) < min_rise;
 }
 
 bool may_be_row(const Scene& scene, const Trail& streak) {
@@ -192,7 +192,7 @@ bool may_be_row(const Scene& scene, const Trail& streak) {
 /// Whether the light across a trail is that of the PSF, as of no hot column or edge, however it
 /// changes along.
 bool has_profile_of_psf(const Scene& scene, const Trail& trail) {
-  constexpr double most_misfit = 0.3;
+  constexpr double max_misfit = 0.3;
   const int reach = int(std::ceil(2.5 * scene.sigma_px)) + 1;
   const auto pixels = pixels_near(scene, trail, reach);
   const auto model = light_in(pixels, {&trail, 1}, scene.psf.at({trail.x_px, trail.y_px}));
@@ -216,7 +216,7 @@ bool has_profile_of_psf(const Scene& scene, const Trail& trail) {
     off += std::abs(seen[k] - both / square * told[k]);
     all += std::abs(both / square * told[k]);
   }
-  return off < most_misfit * all;
+  return off < max_misfit * all;
 }
 
 /// The final fit of a streak. The light of one that flickers or was put together of many exposures
@@ -231,7 +231,7 @@ std::optional<Source> final_fit(const Scene& scene, const Trail& trail, double m
   if (!fits(source) && model_error < uneven_error && !may_be_row(scene, trail) &&
       has_profile_of_psf(scene, trail))
     source = fit_source(scene, trail, true, uneven_error);
-  if (!fits(source) || source->snr() < detection_limits::least_snr) return std::nullopt;
+  if (!fits(source) || source->snr() < detection_limits::min_snr) return std::nullopt;
   return source;
 }
 
@@ -240,15 +240,15 @@ constexpr double flicker_error = 1.0;  // of the model, of light that changes al
 /// The final fit of a streak whose light changes along it, with the light of a line of free pieces;
 /// empty if that does not explain the pixels.
 std::optional<Source> flickering_fit(const Scene& scene, const Trail& trail) {
-  constexpr double most_misfit = 2.5;
+  constexpr double max_misfit = 2.5;
   if (may_be_row(scene, trail) || !has_profile_of_psf(scene, trail)) return std::nullopt;
   auto source = fit_source(scene, trail, true, flicker_error);
   if (!source) return std::nullopt;
   *source = aligned(scene, std::move(*source));
   const auto light = streak_light(scene, *source);
-  if (!light || light->misfit() > most_misfit) return std::nullopt;
+  if (!light || light->misfit() > max_misfit) return std::nullopt;
   set_light(*light, *source);
-  if (source->snr() < detection_limits::least_snr) return std::nullopt;
+  if (source->snr() < detection_limits::min_snr) return std::nullopt;
   return source;
 }
 
@@ -269,7 +269,7 @@ std::optional<Source> even_or_flickering(const Scene& scene, const Trail& trail,
 std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps,
                                 double model_error = 0.02) {
   std::optional<Source> source;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
     if (!(level > 0)) return std::nullopt;
     const Trail rough = trail_along(line, extent, level);
@@ -302,7 +302,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
   if (may_be_row(scene, t) && (is_wide_body(scene, *source) || !beats_stars(scene, *source)))
     return std::nullopt;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
-  if (moves_like_star(scene, *source, star, detection_limits::least_difference_px + 1))
+  if (moves_like_star(scene, *source, star, detection_limits::min_difference_px + 1))
     return std::nullopt;
   return source;
 }
@@ -359,7 +359,7 @@ std::vector<Source> broad_streak(const Scene& scene, const BroadLine& broad) {
 }  // namespace
 
 void find_long_streaks(const Scene& scene, const Component& component, std::vector<Source>& found) {
-  const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
+  const double width_px = 1.5 * scene.sigma_px + 0.5, min_px = 8 * scene.sigma_px;
   // The distance at which a streak with the component's peak falls below the connecting threshold.
   const double rise = std::log(std::max(component.peak_snr / detection_limits::connect_snr, 1.0));
   const double skirt_px = std::max(3.0, 2 * std::sqrt(rise)) * scene.sigma_px + 1.5;
@@ -367,8 +367,8 @@ void find_long_streaks(const Scene& scene, const Component& component, std::vect
   const double extent_px =
       std::hypot(component.max_x - component.min_x + 1, component.max_y - component.min_y + 1);
   int failures = 0;
-  for (int n = 0; n < most_lines && points.size() >= 2 * std::size_t(least_px); ++n) {
-    const auto rough = main_line(points, width_px, least_px);
+  for (int n = 0; n < max_lines && points.size() >= 2 * std::size_t(min_px); ++n) {
+    const auto rough = main_line(points, width_px, min_px);
     if (!rough) break;
     Line line = refined(points, *rough, 2 * width_px);
     line = refined(points, line, width_px);
@@ -377,7 +377,7 @@ void find_long_streaks(const Scene& scene, const Component& component, std::vect
       if (std::abs(line.off(p)) < width_px) on.push_back(line.major(p));
     if (on.size() < 8) break;
     const auto [low, high] = std::minmax_element(on.begin(), on.end());
-    if ((*high - *low) * line.slice_px() < least_px) break;
+    if ((*high - *low) * line.slice_px() < min_px) break;
     const auto broad = broad_line(scene, points, *rough);
     std::vector<Source> sources;
     if (broad && broad->is_no_pair) sources = broad_streak(scene, *broad);
@@ -397,7 +397,7 @@ void find_long_streaks(const Scene& scene, const Component& component, std::vect
     if (!sources.empty()) {
       std::move(sources.begin(), sources.end(), std::back_inserter(found));
       failures = 0;
-    } else if (extent_px < worth_another_px || ++failures == most_failures) {
+    } else if (extent_px < worth_another_px || ++failures == max_failures) {
       break;
     }
   }

@@ -97,10 +97,10 @@ void add_steps_at_ends(Source& source, double sigma_px) {
 }
 
 void add_column_noise(Source& source, double column_noise_e, double sigma_px) {
-  constexpr double most_across_px = 3.0;  // of the columns that its middle passes
+  constexpr double max_across_px = 3.0;  // of the columns that its middle passes
   const Trail& t = source.trail();
   const double across_px = std::abs(t.length_px * std::cos(t.angle_rad));
-  if (!source.streak || !(column_noise_e > 0) || across_px > most_across_px) return;
+  if (!source.streak || !(column_noise_e > 0) || across_px > max_across_px) return;
   // Of the profile across, columns count as by the matched filter.
   const double columns = 2 * sigma_px * std::sqrt(pi);
   const double share = columns / (columns + across_px);

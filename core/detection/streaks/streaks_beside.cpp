@@ -14,14 +14,14 @@
 namespace dmise {
 namespace {
 
-constexpr double reach_sigmas = 6.0;            // across, to which a second streak is searched for
-constexpr double apart_sigmas = 2.3;            // least distance of two
-constexpr double step_px = 0.5;                 // of the profile across
-constexpr double least_gain = 40.0;             // of chi2 by the second streak
-constexpr double least_gain_over_width = 10.0;  // of chi2, against a wide body
-constexpr double least_share = 0.1;             // of the amplitude of both that the fainter has
-constexpr double least_overlap = 0.5;           // of the shorter's length
-constexpr double most_turn_rad = 0.1;
+constexpr double reach_sigmas = 6.0;          // across, to which a second streak is searched for
+constexpr double apart_sigmas = 2.3;          // least distance of two
+constexpr double step_px = 0.5;               // of the profile across
+constexpr double min_gain = 40.0;             // of chi2 by the second streak
+constexpr double min_gain_over_width = 10.0;  // of chi2, against a wide body
+constexpr double min_share = 0.1;             // of the amplitude of both that the fainter has
+constexpr double min_overlap = 0.5;           // of the shorter's length
+constexpr double max_turn_rad = 0.1;
 constexpr double beside_bent_from_px = 100.0;
 
 /// Light across a line, per pixel of the frame.
@@ -153,14 +153,14 @@ Source part_of(const TrailFit& fit, std::size_t which, unsigned free, std::size_
 
 /// Whether two trails are alongside each other, apart and of nearly one direction.
 bool are_beside(const Trail& a, const Trail& b, double sigma_px) {
-  if (std::abs(std::remainder(a.angle_rad - b.angle_rad, pi)) > most_turn_rad) return false;
+  if (std::abs(std::remainder(a.angle_rad - b.angle_rad, pi)) > max_turn_rad) return false;
   const double c = std::cos(a.angle_rad), s = std::sin(a.angle_rad);
   const double along = (b.x_px - a.x_px) * c + (b.y_px - a.y_px) * s;
   const double across = (b.y_px - a.y_px) * c - (b.x_px - a.x_px) * s;
   const double overlap = std::min(a.length_px / 2, along + b.length_px / 2) -
                          std::max(-a.length_px / 2, along - b.length_px / 2);
   return std::abs(across) > apart_sigmas * sigma_px &&
-         overlap > least_overlap * std::min(a.length_px, b.length_px);
+         overlap > min_overlap * std::min(a.length_px, b.length_px);
 }
 
 }  // namespace
@@ -177,8 +177,8 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   const double half = one.length_px / 2;
   const Profile profile = profile_of(pixels, line, -half, half, reach_px);
   const TwoOffsets whole = two_offsets(profile, sigma_px);
-  if (whole.gain < least_gain || whole.share < least_share ||
-      whole.gain < gain_of_width(profile, sigma_px) + least_gain_over_width)
+  if (whole.gain < min_gain || whole.share < min_share ||
+      whole.gain < gain_of_width(profile, sigma_px) + min_gain_over_width)
     return {};
   // Half by half, as the two may not be parallel; near where the whole has them.
   const auto first = two_offsets(profile_of(pixels, line, -half, 0, reach_px), sigma_px);
@@ -193,7 +193,7 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   fit_settings.psf = scene.psf.at(at);
   fit_settings.model_error = detection_limits::model_error;
   fit_settings.background_sigma_e = background_sigma_e(pixels.front());
-  fit_settings.most_steps = 30;
+  fit_settings.max_steps = 30;
   const unsigned free =
       one.length_px > beside_bent_from_px ? trail_line | trail_sagitta : trail_line;
   TrailFit fit;
@@ -208,7 +208,7 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   if (!are_beside(two[0], two[1], sigma_px) || fit.reduced_chi2() > 2.0) return {};
   const double as_one =
       fit_trails(pixels, {one}, {unsigned(trail_bent_line)}, fit_settings).deviance;
-  if (as_one - fit.deviance < least_gain) return {};
+  if (as_one - fit.deviance < min_gain) return {};
   // The final covariance is that of the noise alone.
   fit_settings.model_error = 0.0;
   fit = fit_trails(pixels, two, {free, free}, fit_settings);
@@ -219,8 +219,8 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
     if (!plausible(scene, source.trail()) || !(source.fit.cov(2, 2) > 0)) return {};
     hold_ends_at_edge(scene, source);
     set_flags(scene, source.trail(), source);
-    if (source.snr() < detection_limits::least_snr ||
-        moves_like_star(scene, source, star, detection_limits::least_difference_px + 1))
+    if (source.snr() < detection_limits::min_snr ||
+        moves_like_star(scene, source, star, detection_limits::min_difference_px + 1))
       return {};
     out.push_back(std::move(source));
   }

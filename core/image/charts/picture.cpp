@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr int least_columns = 640;     // of a picture: narrower frames have larger pixels
+constexpr int min_columns = 640;       // of a picture: narrower frames have larger pixels
 constexpr double black_sigma = 2.5;    // of the sky's noise, below the median
 constexpr double white_sigma = 250.0;  // above it
 constexpr double white_share = 0.005;  // maximum fraction of pixels above white
@@ -53,9 +53,9 @@ Sky sky_of(const std::vector<float>& pixels) {
 
 }  // namespace
 
-Preview preview(const CountImage& counts, int most_columns) {
-  const int shrink = std::max(1, (counts.columns + most_columns - 1) / most_columns);
-  const int grow = std::max(1, least_columns / std::max(1, counts.columns));
+Preview preview(const CountImage& counts, int max_columns) {
+  const int shrink = std::max(1, (counts.columns + max_columns - 1) / max_columns);
+  const int grow = std::max(1, min_columns / std::max(1, counts.columns));
   const auto small = average(counts, shrink);
   const Sky sky = sky_of(small.pixels);
   const double white = std::asinh((black_sigma + white_sigma) / linear_sigma);

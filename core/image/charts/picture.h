@@ -15,6 +15,6 @@ struct Preview {
 /// Returns a grey picture of one channel, for display only: asinh of the counts from just below the
 /// sky, which shows noise and faint stars and keeps the shape of bright ones. Wider frames are
 /// averaged over squares of pixels. A frame of equal counts is uniformly dark.
-Preview preview(const CountImage& counts, int most_columns = 1663);
+Preview preview(const CountImage& counts, int max_columns = 1663);
 
 }  // namespace dmise

@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_kept_cells = 16 << 20;
+constexpr std::size_t max_kept_cells = 16 << 20;
 constexpr int places_along = 9;
 
 ArcExtent hull(std::span<const Arc> arcs) {
@@ -82,7 +82,7 @@ void DefocusBlur::take_kernel(double defocus_m, const FieldPlace& place, Threads
     const auto side = std::size_t(2 * plan.half_cells + 1);
     std::size_t kept = side * side;
     for (const auto& [other, made] : kernels_) kept += made.kernel.values.size();
-    if (kept > most_kept_cells) kernels_.clear();
+    if (kept > max_kept_cells) kernels_.clear();
     Optics optics = optics_;
     optics.spread.defocus_m = defocus_m;
     PsfModel model = in_focus_->refocused(optics, plan);

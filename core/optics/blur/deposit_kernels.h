@@ -15,7 +15,7 @@ struct PanelView {
   float phase_x[panel_nodes], phase_y[panel_nodes];  // fraction, [0, 1]
 };
 
-inline constexpr int most_short_nodes = 8;
+inline constexpr int max_short_nodes = 8;
 /// Most pixels along each axis between the ends of a short arc.
 inline constexpr double longest_short_px = 7.0;
 
@@ -23,7 +23,7 @@ inline constexpr double longest_short_px = 7.0;
 struct ShortArc {
   double x_px, y_px, slope_x, slope_y, curve_x, curve_y;
   float signal_e;
-  int nodes = 0;  // 1 to most_short_nodes
+  int nodes = 0;  // 1 to max_short_nodes
 };
 
 struct PsfTableView {

@@ -16,7 +16,7 @@ class ShortArcRule {
  public:
   explicit ShortArcRule(const PsfTable& psf);
 
-  /// Nodes of an arc; 0: more than `most_short_nodes`. `square_px2`: of its length.
+  /// Nodes of an arc; 0: more than `max_short_nodes`. `square_px2`: of its length.
   int nodes(double signal_e, double may_miss_e, double square_px2) const {
     const double square = square_px2 * per_width2_;
     double missed_e = signal_e;
@@ -29,7 +29,7 @@ class ShortArcRule {
 
  private:
   double per_width2_;
-  std::array<double, most_short_nodes> missed_;  // of the light, in the brightest pixel
+  std::array<double, max_short_nodes> missed_;  // of the light, in the brightest pixel
 };
 
 }  // namespace dmise

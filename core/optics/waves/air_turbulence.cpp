@@ -112,9 +112,9 @@ ErrorBound AirTurbulence::error(int level, const PlanFacts& f) {
       f.dimmed_by(1.086 * (scattered * std::min(2.0, scatter) + moved + wings + neighbour));
   error.position_px = shift_px + 0.5 * radius_px * neighbour;
   // A source that is no background is brighter.
-  const double snr = f.brightest_e() * f.pattern_share() / f.least_noise_e();
+  const double snr = f.brightest_e() * f.pattern_share() / f.min_noise_e();
   const double peak = f.peak_in_noise(
-      f.shapes > 0 ? PlanFacts::least_snr_of_source : std::min(snr, PlanFacts::least_snr_of_source),
+      f.shapes > 0 ? PlanFacts::min_snr_of_source : std::min(snr, PlanFacts::min_snr_of_source),
       f.faint_objects ? 0.0 : f.star_trail_px);
   const double sharper =
       level == off ? std::max(1.0, air.still_peak_share / std::max(f.peak_share, 1e-9)) : 1.0;
@@ -123,7 +123,7 @@ ErrorBound AirTurbulence::error(int level, const PlanFacts& f) {
                           : std::min(1.0, deviations * contrast + 0.607 * shift_px / f.sigma_px());
   error.background_sigma += peak * core + beside_sources(level, f, radius_px);
   error.noise = f.noise_of(error.background_sigma);
-  if (f.shapes == 0 && snr < PlanFacts::least_snr) error.photometry_mag = error.position_px = 0.0;
+  if (f.shapes == 0 && snr < PlanFacts::min_snr) error.photometry_mag = error.position_px = 0.0;
   return error;
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double drag_coefficient = 2.2;
 // 12.741621 B* = Cd A / m (Vallado, Fundamentals of Astrodynamics, section 9.4.2).
 constexpr double drag_of_bstar_m2_per_kg = 12.741621;
-constexpr double least_perigee_with_drag_m = 156e3;
+constexpr double min_perigee_with_drag_m = 156e3;
 constexpr int looks = 32;  // at a path between the breakup and the start of the run
 
 MotionState<Teme> pushed(const MotionState<Teme>& parent, const BreakupPiece& piece) {
@@ -60,7 +60,7 @@ std::string length_text(double length_m) { return formatted("%.3g m", length_m);
 
 }  // namespace
 
-int Breakup::most_fragments() const { return int(pieces_over(event, event.least_length_m)); }
+int Breakup::fragment_count() const { return int(pieces_over(event, event.min_length_m)); }
 
 Fragments fragments_of(const Breakup& breakup, std::uint64_t scenario_seed, const Utc& start) {
   DrawnPieces drawn =
@@ -71,7 +71,7 @@ Fragments fragments_of(const Breakup& breakup, std::uint64_t scenario_seed, cons
   for (std::size_t k = 0; k < sets.size(); ++k) {
     const BreakupPiece& piece = drawn.pieces[k];
     states.push_back(pushed(breakup.parent, piece));
-    if (perigee_height_m(states[k]) >= least_perigee_with_drag_m)
+    if (perigee_height_m(states[k]) >= min_perigee_with_drag_m)
       sets[k].bstar_per_earth_radius =
           drag_coefficient * piece.area_to_mass_m2_per_kg / drag_of_bstar_m2_per_kg;
   }
@@ -84,7 +84,7 @@ Fragments fragments_of(const Breakup& breakup, std::uint64_t scenario_seed, cons
     all.pieces.push_back(drawn.pieces[k]);
   }
   keep_those_that_last(all, start);
-  const int digits = int(std::to_string(breakup.most_fragments()).size());
+  const int digits = int(std::to_string(breakup.fragment_count()).size());
   for (std::size_t k = 0; k < all.elements.size(); ++k) {
     MeanElements& e = all.elements[k];
     e.catalogue_number = breakup.first_number + std::uint32_t(k);

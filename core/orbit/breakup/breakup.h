@@ -22,7 +22,7 @@ struct Breakup {
   Utc epoch;                          // of the breakup
 
   /// Numbers that its fragments may take: `pieces_over` the least length, rounded down.
-  int most_fragments() const;
+  int fragment_count() const;
 };
 
 /// Fragments as a catalogue has them.

@@ -35,7 +35,7 @@ double draw_log_area_to_mass(const BreakupEvent& event, double length_m, std::ui
 BreakupPiece draw_piece(const BreakupEvent& event, const RngKey& key, std::uint32_t k) {
   const auto word = [&](std::uint32_t draw) { return rng_word(key, k, draw); };
   BreakupPiece piece;
-  piece.length_m = event.least_length_m * std::pow(uniform_of(word(0)), -1.0 / exponent_of(event));
+  piece.length_m = event.min_length_m * std::pow(uniform_of(word(0)), -1.0 / exponent_of(event));
   const double chi = draw_log_area_to_mass(event, piece.length_m, word(1), word(2), word(3));
   piece.area_to_mass_m2_per_kg = std::pow(10.0, chi);
   piece.area_m2 = area_m2(piece.length_m);
@@ -111,7 +111,7 @@ double mean_log_speed(BreakupKind kind, double log_area_to_mass) {
 
 DrawnPieces draw_pieces(const BreakupEvent& event, std::uint64_t seed, const std::string& stream) {
   const RngKey key = rng_key(seed, stream, 0, "breakup");
-  const auto count = std::uint32_t(pieces_over(event, event.least_length_m));
+  const auto count = std::uint32_t(pieces_over(event, event.min_length_m));
   DrawnPieces drawn;
   for (std::uint32_t k = 0; k < count; ++k) drawn.pieces.push_back(draw_piece(event, key, k));
   std::ranges::stable_sort(drawn.pieces, std::greater(), &BreakupPiece::mass_kg);

@@ -12,12 +12,12 @@ namespace {
 
 using State = MotionState<Teme>;
 
-constexpr int most_rounds = 60;
+constexpr int max_rounds = 60;
 constexpr double gm_m3_per_s2 = sgp4::mu_km3_per_s2 * 1e9;
 constexpr double close_m = 1e-3, close_m_per_s = 1e-6;  // at which a fit has converged
 constexpr double far_m = 1.0, far_m_per_s = 1e-3;       // beyond which it has failed
 constexpr double greatest_eccentricity = 0.999;
-constexpr double least_inclination = 1e-12;
+constexpr double min_inclination = 1e-12;
 
 double positive_turn(double angle) { return angle - 2.0 * pi * std::floor(angle / (2.0 * pi)); }
 
@@ -32,7 +32,7 @@ bool set_orbit(MeanElements& set, const State& state) {
   const double e = std::hypot(e_cos, e_sin), anomaly = std::atan2(e_sin, e_cos);
   if (!(e < greatest_eccentricity)) return false;
   const double across = std::hypot(h.x, h.y),
-               node = across > least_inclination * norm(h) ? std::atan2(h.x, -h.y) : 0.0;
+               node = across > min_inclination * norm(h) ? std::atan2(h.x, -h.y) : 0.0;
   const Vec<Teme> to_node{std::cos(node), std::sin(node), 0.0};
   const double latitude = std::atan2(dot(r, cross(unit(h), to_node)), dot(r, to_node));
   const double true_anomaly =
@@ -74,7 +74,7 @@ std::vector<ElementsFault> fit_elements_at(const Utc& epoch, std::span<const Sta
     else
       faults[k] = ElementsFault::open;
   }
-  for (int round = 0; round < most_rounds && !open.empty(); ++round) {
+  for (int round = 0; round < max_rounds && !open.empty(); ++round) {
     std::vector<MeanElements> trial;
     for (const auto k : open) trial.push_back(sets[k]);
     const Sgp4Batch batch(trial, nullptr, SimdLevel::sse2);

@@ -10,7 +10,7 @@
 namespace dmise {
 
 ErrorBound AirExtinction::error(int, const PlanFacts& f) {
-  return f.dimmed_by(1.1 * f.zenith_extinction_mag * f.most_airmass);
+  return f.dimmed_by(1.1 * f.zenith_extinction_mag * f.max_airmass);
 }
 
 double AirExtinction::cost_s(int level, const PlanFacts& f) { return level * 82e-9 * f.stars; }

@@ -9,15 +9,15 @@ namespace dmise {
 /// Nodes of a table over a star's B-V and the airmass: even in B-V, and in sqrt(X), which follows
 /// the bend near X = 0. Values are stored by colour, then by airmass.
 struct ColourAirmassNodes {
-  static constexpr double most_airmass = 40.0;
+  static constexpr double max_airmass = 40.0;
 
   int colours, airmasses;  // at least 2 each
 
   double airmass(int i) const {
     const double t = double(i) / (airmasses - 1);
-    return most_airmass * t * t;
+    return max_airmass * t * t;
   }
-  double bv(int i) const { return least_bv + i * (greatest_bv - least_bv) / (colours - 1); }
+  double bv(int i) const { return min_bv + i * (greatest_bv - min_bv) / (colours - 1); }
 
   /// The nodes at or below a place, which is held within the table, and the weights of the next
   /// ones.
@@ -26,11 +26,11 @@ struct ColourAirmassNodes {
     double to_next_colour, to_next_airmass;
   };
   Place place(double airmass_of_place, double bv_of_place) const {
-    const double x = std::clamp(airmass_of_place, 0.0, most_airmass);
-    const int a = std::min(int(std::sqrt(x / most_airmass) * (airmasses - 1)), airmasses - 2);
+    const double x = std::clamp(airmass_of_place, 0.0, max_airmass);
+    const int a = std::min(int(std::sqrt(x / max_airmass) * (airmasses - 1)), airmasses - 2);
     const double x0 = airmass(a), x1 = airmass(a + 1);
-    const double used = bv_of_place >= least_bv ? std::min(bv_of_place, greatest_bv) : least_bv;
-    const double c = (used - least_bv) / (greatest_bv - least_bv) * (colours - 1);
+    const double used = bv_of_place >= min_bv ? std::min(bv_of_place, greatest_bv) : min_bv;
+    const double c = (used - min_bv) / (greatest_bv - min_bv) * (colours - 1);
     const int row = std::min(int(c), colours - 2);
     return {row, a, c - row, (x - x0) / (x1 - x0)};
   }

@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr int edges = BandDispersion::most_cells + 1;
+constexpr int edges = BandDispersion::max_cells + 1;
 constexpr int dispersion_colours = 25, dispersion_airmasses = 17;  // every 0.1 of B-V
 constexpr ColourAirmassNodes dispersion_nodes{dispersion_colours, dispersion_airmasses};
 
@@ -66,12 +66,12 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
     int cell;
   };
   std::vector<Step> steps;
-  for (int cell = 0; cell < most_cells; ++cell) {
+  for (int cell = 0; cell < max_cells; ++cell) {
     const auto edge_m = [&](int edge) {
       return edge == 0 ? blue_m_
-             : edge == most_cells
+             : edge == max_cells
                  ? red_m_
-                 : wavelength_of_dry_air_m(std::lerp(blue, red, double(edge) / most_cells));
+                 : wavelength_of_dry_air_m(std::lerp(blue, red, double(edge) / max_cells));
     };
     const double low = edge_m(cell), high = edge_m(cell + 1);
     const int pieces = std::max(4, int(std::ceil((high - low) / step_m)));
@@ -86,12 +86,12 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
     k_mag[s] = extinction.at_or_end(steps[s].wavelength_m);
   // A loss common to all wavelengths changes nothing: it is left out, so that some light remains at
   // the horizon.
-  const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
+  const double min_k = *std::min_element(k_mag.begin(), k_mag.end());
   std::vector<double> transmission(steps.size() * dispersion_airmasses);
   for (int a = 0; a < dispersion_airmasses; ++a)
     for (std::size_t s = 0; s < steps.size(); ++s)
       transmission[a * steps.size() + s] =
-          light_of_magnitude((k_mag[s] - least_k) * dispersion_nodes.airmass(a));
+          light_of_magnitude((k_mag[s] - min_k) * dispersion_nodes.airmass(a));
   sums_.reserve(std::size_t(dispersion_colours * dispersion_airmasses * edges * 2));
   for (int c = 0; c < dispersion_colours; ++c) {
     const StarSpectrum star = star_spectrum(dispersion_nodes.bv(c));
@@ -128,7 +128,7 @@ void BandDispersion::add_cells(double airmass, double bv, int count,
   };
   double light = 0.0, moment = 0.0;
   for (int k = 1; k <= count; ++k) {
-    const int edge = k * (most_cells / count);
+    const int edge = k * (max_cells / count);
     const double light_to = sum(edge, 0), moment_to = sum(edge, 1);
     const double share = light_to - light;
     if (share > 0.0) cells.push_back({std::clamp((moment_to - moment) / share, 0.0, 1.0), share});
@@ -139,7 +139,7 @@ void BandDispersion::add_cells(double airmass, double bv, int count,
 
 int Dispersion::cells(int level, double length_px) {
   int count = 1;
-  while (count < BandDispersion::most_cells && length_px > count * cell_px[std::size_t(level)])
+  while (count < BandDispersion::max_cells && length_px > count * cell_px[std::size_t(level)])
     count *= 2;
   return count;
 }

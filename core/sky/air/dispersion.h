@@ -22,7 +22,7 @@ struct SpectrumCell {
 /// extinction in the blue moves the mean towards the red.
 class BandDispersion {
  public:
-  static constexpr int most_cells = 128;
+  static constexpr int max_cells = 128;
 
   /// `extinction` [mag/airmass]; empty: of one value at all wavelengths.
   BandDispersion(const Band& band, const Curve& extinction);
@@ -30,13 +30,13 @@ class BandDispersion {
   /// Wavelengths between which the band has light [m].
   double blue_m() const { return blue_m_; }
   double red_m() const { return red_m_; }
-  /// Adds the cells of a source to `cells`: `count`, a power of two to `most_cells`, of equal
+  /// Adds the cells of a source to `cells`: `count`, a power of two to `max_cells`, of equal
   /// refraction, each at the mean of its light.
   void add_cells(double airmass, double bv, int count, std::vector<SpectrumCell>& cells) const;
 
  private:
   double blue_m_ = 0.0, red_m_ = 0.0;
-  /// Light up to each edge of `most_cells` cells, and its moment: colours x airmasses x edges x 2.
+  /// Light up to each edge of `max_cells` cells, and its moment: colours x airmasses x edges x 2.
   std::vector<double> sums_;
 };
 

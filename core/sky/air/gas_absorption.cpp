@@ -79,13 +79,13 @@ BandGases::BandGases(const Band& band, const Curve& extinction, const AirGases& 
     k_mag[s] = extinction.at_or_end(x_m[s]);
     response[s] = band.response.at_or_zero(x_m[s]);
   }
-  const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
+  const double min_k = *std::min_element(k_mag.begin(), k_mag.end());
   std::vector<double> without(std::size_t(steps) * airmasses), with(without.size());
   for (int a = 0; a < airmasses; ++a) {
     const Curve transmission = gas_transmission(air, nodes.airmass(a));
     for (int s = 0; s < steps; ++s) {
       const auto at = std::size_t(a * steps + s);
-      without[at] = light_of_magnitude((k_mag[s] - least_k) * nodes.airmass(a));
+      without[at] = light_of_magnitude((k_mag[s] - min_k) * nodes.airmass(a));
       with[at] = without[at] * transmission.at_or_end(x_m[s]);
     }
   }

@@ -47,7 +47,7 @@ double scintillation_sigma(double aperture_m, double exposure_s, double airmass,
 namespace {
 
 // Rate x airmass of the nodes: even in its logarithm.
-constexpr double least_rate = 1e-6, greatest_rate = 1.0;
+constexpr double min_rate = 1e-6, greatest_rate = 1.0;
 constexpr int rates = 121;
 
 }  // namespace
@@ -58,7 +58,7 @@ MotionAveraging::MotionAveraging(const BlownTurbulence& turbulence) {
   const double still = scintillation_time_m_s(moving);
   for (int i = 0; i < rates; ++i) {
     moving.wind.slew_rad_per_s =
-        least_rate * std::pow(greatest_rate / least_rate, double(i) / (rates - 1));
+        min_rate * std::pow(greatest_rate / min_rate, double(i) / (rates - 1));
     log_ratio_.push_back(
         still > 0.0 ? std::min(0.0, std::log(scintillation_time_m_s(moving) / still)) : 0.0);
   }
@@ -66,9 +66,9 @@ MotionAveraging::MotionAveraging(const BlownTurbulence& turbulence) {
 
 double MotionAveraging::operator()(double rate_rad_per_s, double airmass) const {
   const double rate = rate_rad_per_s * airmass;
-  if (!(rate > least_rate)) return 1.0;
-  static const double per_node = (rates - 1) / std::log(greatest_rate / least_rate);
-  const TablePlace at = table_place(std::log(rate / least_rate) * per_node, rates);
+  if (!(rate > min_rate)) return 1.0;
+  static const double per_node = (rates - 1) / std::log(greatest_rate / min_rate);
+  const TablePlace at = table_place(std::log(rate / min_rate) * per_node, rates);
   return std::exp(std::lerp(log_ratio_[at.node], log_ratio_[at.node + 1], at.part));
 }
 

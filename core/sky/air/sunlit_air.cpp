@@ -18,7 +18,7 @@ constexpr double height_step_m = 1e3, horizon = 0.06;
 constexpr std::size_t heights = std::size_t(AirColumns::top_m / height_step_m) + 1, angles = 48;
 
 // Light by columns of air and ozone [atm-cm]: even steps of the root.
-constexpr double most_air = 400.0, most_ozone = 60.0;
+constexpr double max_air = 400.0, max_ozone = 60.0;
 constexpr std::size_t airs = 64, ozones = 32;
 constexpr double darkest = -200.0;  // of logarithms
 
@@ -114,7 +114,7 @@ ScatteredSunlight::ScatteredSunlight(const Band& band) {
   for (std::size_t i = 0; i < airs; ++i)
     for (std::size_t k = 0; k < ozones; ++k) {
       const double x = double(i) / (airs - 1), y = double(k) / (ozones - 1);
-      const double air = most_air * x * x, ozone = most_ozone * y * y;
+      const double air = max_air * x * x, ozone = max_ozone * y * y;
       std::array<double, wavelengths> log_light;
       for (int w = 0; w < wavelengths; ++w)
         log_light[w] = log_weight[w] - depth[w] * air - absorbs[w] * ozone;
@@ -126,7 +126,7 @@ ScatteredSunlight::ScatteredSunlight(const Band& band) {
 }
 
 double ScatteredSunlight::behind(const AirColumn& column) const {
-  if (!(column.air < most_air) || !(column.ozone < most_ozone)) return 0.0;
+  if (!(column.air < max_air) || !(column.ozone < max_ozone)) return 0.0;
   // Linear in the columns themselves, as their logarithms nearly are.
   const auto of_root = [](double value, double most, std::size_t nodes) {
     TablePlace at = table_place(std::sqrt(value / most) * double(nodes - 1), nodes);
@@ -134,8 +134,8 @@ double ScatteredSunlight::behind(const AirColumn& column) const {
     at.part = (value / most - from * from) / (step * (2.0 * from + step));
     return at;
   };
-  const TablePlace a = of_root(column.air, most_air, airs);
-  const TablePlace o = of_root(column.ozone, most_ozone, ozones);
+  const TablePlace a = of_root(column.air, max_air, airs);
+  const TablePlace o = of_root(column.ozone, max_ozone, ozones);
   const double* at = &log_light_[a.node * ozones + o.node];
   const double log = std::lerp(std::lerp(at[0], at[1], o.part),
                                std::lerp(at[ozones], at[ozones + 1], o.part), a.part);

@@ -98,12 +98,11 @@ double scintillation_time_m_s(const BlownTurbulence& turbulence, double airmass)
   if (const auto* table = std::get_if<Cn2Table>(&turbulence.profile)) check(*table);
   const double whole = integrate(turbulence.profile, [](double) { return 1.0; });
   if (!(whole > 0.0)) return 0.0;
-  constexpr double least_m_per_s = 0.1;  // no air stands still
+  constexpr double min_m_per_s = 0.1;  // no air stands still
   return integrate(turbulence.profile,
                    [&](double h) {
                      return h * h /
-                            std::max(layer_speed_m_per_s(turbulence.wind, h, airmass),
-                                     least_m_per_s);
+                            std::max(layer_speed_m_per_s(turbulence.wind, h, airmass), min_m_per_s);
                    }) /
          whole;
 }

@@ -27,7 +27,7 @@ class EarthRadiance {
   EarthRadiance(const Band& band, const Vec<Gcrs>& from_m, const Vec<Gcrs>& sun_m,
                 const OblateEarth& earth, double albedo);
   /// Photons/s/m2/sr under the Sun.
-  double most_photons_per_s_m2_sr() const { return full_; }
+  double max_photons_per_s_m2_sr() const { return full_; }
   /// Photons/s/m2/sr in a direction (any length > 0); negative beside the Earth.
   double photons_per_s_m2_sr(const Vec<Gcrs>& direction) const;
 

@@ -57,7 +57,7 @@ class LitSphere {
   /// Photons/s/m2 of the whole disc.
   double photons_per_s_m2() const { return whole_; }
   /// Photons/s/m2/sr of its brightest place, at most.
-  double most_photons_per_s_m2_sr() const { return scale_; }
+  double max_photons_per_s_m2_sr() const { return scale_; }
   /// Photons/s/m2/sr in a direction (unit); negative beside the sphere.
   double photons_per_s_m2_sr(const Vec<Gcrs>& direction) const;
 

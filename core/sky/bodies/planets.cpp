@@ -58,12 +58,12 @@ double latitude_rad(const Vec<Gcrs>& pole, const Vec<Gcrs>& line) {
 }
 
 double saturn_v_mag(double phase_deg, const Vec<Gcrs>& from_sun, const Vec<Gcrs>& from_observer) {
-  constexpr double most_tilt_deg = 27.0;
+  constexpr double max_tilt_deg = 27.0;
   const double sun_rad = latitude_rad(saturn_pole, from_sun),
                observer_rad = latitude_rad(saturn_pole, from_observer);
   // The rings' dark side adds nothing.
   const double tilt_rad =
-      std::min(std::sqrt(std::max(0.0, sun_rad * observer_rad)), most_tilt_deg * deg);
+      std::min(std::sqrt(std::max(0.0, sun_rad * observer_rad)), max_tilt_deg * deg);
   return -8.914 - 1.825 * std::sin(tilt_rad) + 0.026 * phase_deg -
          0.378 * std::sin(tilt_rad) * std::exp(-2.25 * phase_deg);
 }

@@ -14,7 +14,7 @@ namespace {
 
 // The cheap tests hold for any Sun from 0.98 au on and any object out to 2e8 m.
 constexpr double margin_m = 110e3;
-constexpr double most_bending = 0.021;  // of a ray along the ground
+constexpr double max_bending = 0.021;  // of a ray along the ground
 
 // A unit vector across `v` in the plane of `v` and `towards`; any across `v` when these are
 // parallel.
@@ -45,7 +45,7 @@ EarthShadow::EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth, Edge 
     : EarthShadow(sun_m, earth) {
   edge_ = edge;
   if (edge != Edge::sharp) band_ = band;
-  if (edge == Edge::air) dark_slope_ = cone_slope + most_bending;
+  if (edge == Edge::air) dark_slope_ = cone_slope + max_bending;
 }
 
 double EarthShadow::light_of(const LowSun& sun, double distance_m, double radius_m) const {

@@ -8,7 +8,7 @@ namespace dmise {
 namespace {
 
 /// Closer to the zenith or nadir there is no azimuth to bend along.
-constexpr double least_cosine = 1e-12;
+constexpr double min_cosine = 1e-12;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ Vec<Gcrs> AtmosphericRefraction::apply(const Vec<Gcrs>& direction, double distan
   const double sine = dot(direction, up);
   const Vec<Gcrs> level = direction - up * sine;
   const double cosine = norm(level);
-  if (cosine < least_cosine) return direction;
+  if (cosine < min_cosine) return direction;
   const auto seen = air_.refraction.apparent_from_true({sine, cosine}, distance_m);
   return level * (seen.cosine / cosine) + up * seen.sine;
 }
@@ -47,7 +47,7 @@ Vec<Gcrs> AtmosphericRefraction::undo(const Vec<Gcrs>& apparent) const {
   const double sine = dot(apparent, up);
   const Vec<Gcrs> level = apparent - up * sine;
   const double cosine = norm(level);
-  if (cosine < least_cosine) return apparent;
+  if (cosine < min_cosine) return apparent;
   const double elevation_rad = air_.refraction.true_from_apparent_rad(std::atan2(sine, cosine));
   return level * (std::cos(elevation_rad) / cosine) + up * std::sin(elevation_rad);
 }

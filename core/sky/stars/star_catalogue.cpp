@@ -45,7 +45,7 @@ std::optional<double> bv_of_spectral_type(std::string_view type) {
 }
 
 StarKind star_kind(const StarRecord& star, double bv) {
-  constexpr double faintest_giant_mag = 4.5, least_dwarf_bv = 0.95;
+  constexpr double faintest_giant_mag = 4.5, min_dwarf_bv = 0.95;
   const std::string_view type = star.spectral_type;
   // Dwarfs are of class V; IV is that of subgiants.
   bool dwarf = false;
@@ -54,7 +54,7 @@ StarKind star_kind(const StarRecord& star, double bv) {
     dwarf = star.v_mag + 5.0 + 5.0 * std::log10(*star.parallax_rad / arcsec) > faintest_giant_mag;
   if (type.size() > 1 && type[0] == 'M' && type[1] >= '0' && type[1] <= '9')
     return (dwarf ? m_dwarf : m_giant)(type[1] - '0');
-  return dwarf && bv >= least_dwarf_bv ? StarKind::red_dwarf : StarKind::most;
+  return dwarf && bv >= min_dwarf_bv ? StarKind::red_dwarf : StarKind::most;
 }
 
 const char* append_star(StarCatalogue& catalogue, const StarRecord& star) {

@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "records are read as t
 
 constexpr std::size_t text_bytes = 124, trixel_bytes = 12, record_bytes = 32;
 constexpr std::int16_t byte_order_mark = 0x4B53;
-constexpr std::int32_t most_trixels = 8 << 14;
+constexpr std::int32_t max_trixels = 8 << 14;
 
 /// A record. Units are by the scales of the fields below.
 struct Record {
@@ -108,7 +108,7 @@ void check_fields(DeepFile& file) {
 std::vector<std::uint32_t> records_of_trixels(DeepFile& file) {
   const std::size_t counted_at = file.at();
   const auto trixels = file.take<std::int32_t>();
-  if (trixels < 1 || trixels > most_trixels) file.fail("no such number of trixels", counted_at);
+  if (trixels < 1 || trixels > max_trixels) file.fail("no such number of trixels", counted_at);
   file.need(std::size_t(trixels) * trixel_bytes);
   constexpr std::size_t after_trixels = 5;
   std::size_t next = file.at() + std::size_t(trixels) * trixel_bytes + after_trixels;

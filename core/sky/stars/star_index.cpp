@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 /// Of 2 degrees: some 12 stars a cell with 126,000 stars.
-constexpr int least_bands = 90;
+constexpr int min_bands = 90;
 
 constexpr double first_limit = 9.0;
 constexpr float no_limit = std::numeric_limits<float>::infinity();
@@ -28,13 +28,13 @@ std::vector<StarTier> empty_tiers(std::size_t count) {
     const double finer = std::exp2(0.5 * std::clamp(limit - 11, 0.0, 6.0));
     const bool is_last = t + 1 == count;
     tiers.push_back(
-        {.faintest_v_mag = is_last ? no_limit : float(limit), .bands = int(least_bands * finer)});
+        {.faintest_v_mag = is_last ? no_limit : float(limit), .bands = int(min_bands * finer)});
   }
   return tiers;
 }
 
 std::size_t tiers_for(const std::vector<float>& v_mag) {
-  if (v_mag.size() <= most_stars_at_once) return 1;
+  if (v_mag.size() <= max_stars_at_once) return 1;
   const double faintest = *std::ranges::max_element(v_mag);
   return std::size_t(std::clamp(std::ceil(faintest) - first_limit + 1, 1.0, 13.0));
 }

@@ -31,11 +31,11 @@ struct StarIndex {
   bool operator==(const StarIndex&) const = default;
 };
 
-inline constexpr std::size_t most_star_tiers = 16;
+inline constexpr std::size_t max_star_tiers = 16;
 
 /// A catalogue of up to this many stars has one tier, is checked whole when it is mapped, and may
 /// be iterated over.
-inline constexpr std::size_t most_stars_at_once = 1'000'000;
+inline constexpr std::size_t max_stars_at_once = 1'000'000;
 
 /// Sorts the catalogue by tier, cell and magnitude (stable) and indexes it.
 StarIndex build_star_index(StarCatalogue& catalogue);

@@ -27,7 +27,7 @@ struct StarMap {
   std::string cache_problem;  // why no cache was written; empty if there was no problem
 
   /// Whether all stars may be iterated over: they are few, and were checked.
-  bool is_small() const { return stars.size() <= most_stars_at_once; }
+  bool is_small() const { return stars.size() <= max_stars_at_once; }
 };
 
 /// Indexes a catalogue.

@@ -50,10 +50,10 @@ struct Header {
     std::uint32_t bands = 0;
     std::uint64_t cells = 0;
   };
-  std::array<Tier, most_star_tiers> tier = {};
+  std::array<Tier, max_star_tiers> tier = {};
   std::array<std::uint64_t, StarSummary::bins> count = {};
 };
-static_assert(sizeof(Header) == 128 + 16 * most_star_tiers + 8 * StarSummary::bins);
+static_assert(sizeof(Header) == 128 + 16 * max_star_tiers + 8 * StarSummary::bins);
 static_assert(sizeof(Header) % alignment == 0);
 
 std::size_t padding(std::size_t bytes) { return (alignment - bytes % alignment) % alignment; }
@@ -230,7 +230,7 @@ OpenedStarMap open_star_map(const std::string& path) {
   if (h.crc !=
       crc32c(bytes.data() + sizeof h, h.columns_at - sizeof h, crc32c(&without_crc, sizeof h)))
     fail("the checksum of the index is wrong");
-  if (h.tiers > most_star_tiers || h.stars > std::numeric_limits<std::uint32_t>::max() ||
+  if (h.tiers > max_star_tiers || h.stars > std::numeric_limits<std::uint32_t>::max() ||
       !plausible(h))
     fail("the header is wrong");
   OpenedStarMap opened{.map = {.file = file, .from_cache = true},

@@ -83,16 +83,16 @@ SyntheticStars::Missing SyntheticStars::count_missing(std::uint32_t number) cons
   const SphereCells::Cell cell = cells.cell(number);
   std::vector<std::uint32_t> found;
   query_cone(*catalogue_, cell.middle, cells.half_rad(), catalogue_to_v_mag_, found);
-  std::array<double, most_bins> count{};
+  std::array<double, max_bins> count{};
   for (const std::uint32_t star : found) {
     const double bin = std::floor((catalogue_->stars.v_mag[star] - from_v_mag_) / bin_mag);
-    if (bin < 0.0 || bin >= double(most_bins) ||
+    if (bin < 0.0 || bin >= double(max_bins) ||
         cells.at(catalogue_->index.direction[star]) != number)
       continue;
     ++count[std::size_t(bin)];
   }
   const StarCounts counts(galactic_from_gcrs() * cell.middle);
-  for (std::size_t bin = 0; bin < most_bins; ++bin) {
+  for (std::size_t bin = 0; bin < max_bins; ++bin) {
     const double from = from_v_mag_ + bin_mag * double(bin);
     const double mean =
         (counts.brighter_than(from + bin_mag) - counts.brighter_than(from)) * square_degrees(cell);
@@ -156,7 +156,7 @@ void SyntheticStars::visit(const Vec<Gcrs>& axis, double radius_rad, double fain
         const double sin_latitude = (galactic_from_gcrs() * cell.middle).z;
         for (double bright = from; bright < to; bright += bin_mag) {
           const auto bin = std::size_t(std::lround((bright - from_v_mag_) / bin_mag));
-          if (bin >= most_bins) break;
+          if (bin >= max_bins) break;
           // The whole bin is drawn, so that brighter stars are the same for every limit.
           const double faint = bright + bin_mag;
           const auto draw = std::uint32_t(2.0 * bright + 0.5);

@@ -47,8 +47,8 @@ class SyntheticStars {
 
  private:
   static constexpr double bin_mag = 0.5;
-  static constexpr std::size_t most_bins = 48;
-  using Missing = std::array<float, most_bins>;  // share of the counts, by half magnitude
+  static constexpr std::size_t max_bins = 48;
+  using Missing = std::array<float, max_bins>;  // share of the counts, by half magnitude
 
   const Missing& missing_at(const Vec<Gcrs>& direction) const;
   Missing count_missing(std::uint32_t cell) const;

@@ -13,7 +13,7 @@
 namespace dmise {
 namespace {
 
-constexpr double most_mag = 50.0, most_period_d = 1e6, most_epoch_d = 200000.0;
+constexpr double max_mag = 50.0, max_period_d = 1e6, max_epoch_d = 200000.0;
 
 /// A field of a line, with the column at which it begins, from 1.
 struct Field {
@@ -108,7 +108,7 @@ std::string name_of(std::string_view text) {
 
 /// Depth of a minimum below the maximum; none where there is none.
 std::optional<double> depth_of(const Field& field, const std::optional<double>& brightest_mag) {
-  const Marked minimum = marked(field, -most_mag, most_mag, "a magnitude");
+  const Marked minimum = marked(field, -max_mag, max_mag, "a magnitude");
   if (!minimum.value) return std::nullopt;
   if (minimum.in_brackets) return std::max(0.0, *minimum.value);
   if (!brightest_mag) return std::nullopt;
@@ -134,13 +134,13 @@ bool read_star(const std::vector<Field>& f, VariableRecord& star) {
   star.type = std::string(f[type].text);
   star.band = std::string(f[band].text);
   const bool has_place = read_place(f[place], star);
-  const Marked brightest = marked(f[maximum], -most_mag, most_mag, "a magnitude");
+  const Marked brightest = marked(f[maximum], -max_mag, max_mag, "a magnitude");
   if (!brightest.in_brackets) star.brightest_mag = brightest.value;
   star.depth_mag = depth_of(f[minimum], star.brightest_mag);
   star.second_depth_mag = depth_of(f[second], star.brightest_mag);
-  const Marked day = marked(f[epoch], 0.0, most_epoch_d, "a Julian date less 2400000");
+  const Marked day = marked(f[epoch], 0.0, max_epoch_d, "a Julian date less 2400000");
   if (day.value) star.epoch_hjd = 2400000.0 + *day.value;
-  const Marked days = marked(f[period], 0.0, most_period_d, "a period [d]");
+  const Marked days = marked(f[period], 0.0, max_period_d, "a period [d]");
   if (days.value && *days.value > 0.0 && !days.is_limit) star.period_d = days.value;
   const Marked percent = marked(f[share], 0.0, 100.0, "a share of the period [%]");
   if (percent.value && *percent.value > 0.0 && *percent.value < 100.0)
@@ -151,7 +151,7 @@ bool read_star(const std::vector<Field>& f, VariableRecord& star) {
 }  // namespace
 
 VariableReading parse_gcvs(std::string_view text, const std::string& name) {
-  constexpr std::size_t least_fields = 12;
+  constexpr std::size_t min_fields = 12;
   VariableReading reading;
   bool begun = false;
   LineReader lines(without_byte_order_mark(text));
@@ -164,9 +164,9 @@ VariableReading parse_gcvs(std::string_view text, const std::string& name) {
     begun = true;
     try {
       if (!is_star) throw Problem{fields[0], "must be the number of a star" + got(fields[0].text)};
-      if (fields.size() < least_fields)
+      if (fields.size() < min_fields)
         throw Problem{fields.back(), "the line has " + std::to_string(fields.size()) + " of " +
-                                         std::to_string(least_fields) + " fields between bars"};
+                                         std::to_string(min_fields) + " fields between bars"};
       VariableRecord star;
       if (read_star(fields, star))
         reading.stars.push_back(std::move(star));

@@ -83,20 +83,20 @@ RangeRates bound_range_rates(const Tracklet& tracklet, double range_m) {
 Outcome<std::vector<OrbitState>> admissible_region(const Tracklet& tracklet,
                                                    const AdmissibleSettings& settings) {
   using Result = Outcome<std::vector<OrbitState>>;
-  if (!(settings.least_range_m > 0) || !(settings.largest_range_m > settings.least_range_m) ||
+  if (!(settings.min_range_m > 0) || !(settings.largest_range_m > settings.min_range_m) ||
       !(settings.largest_range_m < 1e12) || settings.ranges < 2 || settings.range_rates < 2)
     return Result::refused("ranges must rise from above 0, with two samples at least");
   std::vector<OrbitState> out;
   const double step =
-      std::log(settings.largest_range_m / settings.least_range_m) / (settings.ranges - 1);
+      std::log(settings.largest_range_m / settings.min_range_m) / (settings.ranges - 1);
   for (int i = 0; i < settings.ranges; ++i) {
-    const double range_m = settings.least_range_m * std::exp(i * step);
+    const double range_m = settings.min_range_m * std::exp(i * step);
     const RangeRates bounds = bound_range_rates(tracklet, range_m);
     if (bounds.empty()) continue;
     for (int k = 0; k < settings.range_rates; ++k) {
       const double share = (k + 0.5) / settings.range_rates;
       const double rate =
-          bounds.least_m_per_s + share * (bounds.largest_m_per_s - bounds.least_m_per_s);
+          bounds.min_m_per_s + share * (bounds.largest_m_per_s - bounds.min_m_per_s);
       const OrbitState state{
           tracklet.time - sim_seconds(range_m / speed_of_light_m_per_s),
           tracklet.sensor_m + range_m * tracklet.direction,

@@ -21,15 +21,15 @@ struct Tracklet {
 Outcome<Tracklet> tracklet_of(std::span<const AngleObservation> observations);
 
 struct AdmissibleSettings {
-  double least_range_m = 1e5, largest_range_m = 1e8;
+  double min_range_m = 1e5, largest_range_m = 1e8;
   OrbitLimits limits{.largest_apogee_m = 5e7};
   int ranges = 40, range_rates = 21;  // samples, >= 2
 };
 
 /// Range rates between which the energy is negative at a range; empty if there are none.
 struct RangeRates {
-  double least_m_per_s = 0.0, largest_m_per_s = 0.0;
-  bool empty() const { return !(least_m_per_s < largest_m_per_s); }
+  double min_m_per_s = 0.0, largest_m_per_s = 0.0;
+  bool empty() const { return !(min_m_per_s < largest_m_per_s); }
 };
 RangeRates bound_range_rates(const Tracklet& tracklet, double range_m);
 

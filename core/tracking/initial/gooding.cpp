@@ -25,7 +25,7 @@ class Problem {
     const Vec<Gcrs> start = three_[0].sensor_m + first_m * three_[0].direction;
     const Vec<Gcrs> end = three_[2].sensor_m + last_m * three_[2].direction;
     LambertSettings settings;
-    settings.most_turns = turns_;
+    settings.max_turns = turns_;
     settings.normal = short_way_ ? cross(start, end) : cross(end, start);
     const double first_light = first_m / speed_of_light_m_per_s;
     const double between_s =
@@ -129,7 +129,7 @@ Outcome<std::vector<OrbitState>> gooding_orbit(std::span<const AngleObservation>
   const double sigma_rad = largest_sigma_rad(three);
   bool undetermined = false;
   std::vector<OrbitState> out;
-  for (int half_turns = 0; half_turns <= settings.most_half_turns; ++half_turns) {
+  for (int half_turns = 0; half_turns <= settings.max_half_turns; ++half_turns) {
     const int turns = half_turns / 2;
     const bool short_way = half_turns % 2 == 0;
     for (const bool other_branch : {false, true}) {

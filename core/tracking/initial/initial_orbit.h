@@ -21,7 +21,7 @@ Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> t
 
 struct GoodingSettings {
   std::vector<double> ranges_m;  // guesses of first and last range; empty: from 300 km to GEO
-  int most_half_turns = 1;       // between first and last observation
+  int max_half_turns = 1;        // between first and last observation
   OrbitLimits limits;
 };
 

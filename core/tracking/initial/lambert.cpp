@@ -118,7 +118,7 @@ struct LeastTime {
 };
 
 /// Least time for `turns` >= 1, by Halley's steps on its derivative from that at 0.
-LeastTime least_time(const TimeOfFlight& flight, int turns, double at0) {
+LeastTime min_time(const TimeOfFlight& flight, int turns, double at0) {
   LeastTime least{0, at0};
   for (int i = 0; i < 40; ++i) {
     const auto d = flight.derivatives(least.x, least.time);
@@ -180,7 +180,7 @@ Outcome<std::vector<LambertPath>> lambert(const Vec<Gcrs>& start_m, const Vec<Gc
     const Vec<Gcrs> velocity = radial * u1 + (transverse / r1) * cross(normal, u1);
     if (std::isfinite(norm(velocity))) out.push_back({velocity, turns, long_period});
   };
-  for (int turns = 0; turns <= settings.most_turns; ++turns) {
+  for (int turns = 0; turns <= settings.max_turns; ++turns) {
     if (turns == 0) {
       auto x = by_householder(flight, t, 0, first_guess(lambda, t));
       if (!x) x = by_bisection(flight, t, 0, -1 + 1e-14, 1e7);
@@ -189,7 +189,7 @@ Outcome<std::vector<LambertPath>> lambert(const Vec<Gcrs>& start_m, const Vec<Gc
     }
     const double t0 = std::acos(std::clamp(lambda, -1.0, 1.0)) +
                       lambda * std::sqrt(1 - lambda * lambda) + turns * pi;
-    const LeastTime least = least_time(flight, turns, t0);
+    const LeastTime least = min_time(flight, turns, t0);
     if (t < least.time) continue;
     // One root on each side of the least time.
     const double left = std::pow((turns + 1) * pi / (8 * t), 2.0 / 3);

@@ -14,7 +14,7 @@ struct LambertPath {
 };
 
 struct LambertSettings {
-  int most_turns = 0;         // >= 0
+  int max_turns = 0;          // >= 0
   Vec<Gcrs> normal{0, 0, 1};  // paths turn about it in the right-hand sense
 };
 

@@ -10,7 +10,7 @@ namespace dmise {
 namespace {
 
 /// Candidates that are fitted, out of all that were found.
-constexpr std::size_t most_fits = 8;
+constexpr std::size_t max_fits = 8;
 
 struct Candidate {
   OrbitState state;
@@ -98,7 +98,7 @@ Outcome<std::vector<BatchFit>> fits_of(const ForceModel& forces,
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.cost < b.cost; });
-  if (candidates.size() > most_fits) candidates.resize(most_fits);
+  if (candidates.size() > max_fits) candidates.resize(max_fits);
   std::vector<BatchFit> fits;
   for (const Candidate& candidate : candidates) {
     auto fit = fit_orbit(forces, sorted, candidate.state, settings);

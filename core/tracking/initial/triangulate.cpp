@@ -107,7 +107,7 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
     return Meeting::refused("the lines of sight are too far apart in time");
   TriangulatedPosition out;
   out.angle_rad = widest_angle(lines);
-  if (!(out.angle_rad >= settings.least_angle_rad))
+  if (!(out.angle_rad >= settings.min_angle_rad))
     return Meeting::refused("the lines of sight are nearly parallel");
 
   const Eigen::Vector3d start = nearest_point(lines);
@@ -123,7 +123,7 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
   Eigen::Vector3d r = start, v = eigen_of(velocity_m_per_s);
   const bool known = norm(velocity_m_per_s) > 0;
   const auto in_range = [&] {
-    return r.allFinite() && r.norm() >= settings.least_distance_m &&
+    return r.allFinite() && r.norm() >= settings.min_distance_m &&
            r.norm() <= settings.largest_distance_m;
   };
   if (!in_range()) return Meeting::refused("the lines of sight meet at no height of an orbit");
@@ -162,7 +162,7 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
   out.degrees_of_freedom = 2 * int(lines.size()) - 3;
   if (!out.covariance_m2.allFinite() || !(out.covariance_m2.diagonal().array() > 0).all())
     return Meeting::refused("the lines of sight do not determine a position");
-  if (tail(end.chi2, out.degrees_of_freedom) < settings.least_probability)
+  if (tail(end.chi2, out.degrees_of_freedom) < settings.min_probability)
     return Meeting::refused("the lines of sight miss each other");
   return out;
 }

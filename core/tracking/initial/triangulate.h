@@ -9,10 +9,10 @@
 namespace dmise {
 
 struct TriangulationSettings {
-  double longest_s = 0.5;         // between the first and the last exposure; the object moves
-  double least_angle_rad = 1e-3;  // between two lines of sight, at their widest
-  double least_distance_m = 6.4e6, largest_distance_m = 1e9;  // of the position from the centre
-  double least_probability = 1e-6;  // of lines that miss each other so far
+  double longest_s = 0.5;       // between the first and the last exposure; the object moves
+  double min_angle_rad = 1e-3;  // between two lines of sight, at their widest
+  double min_distance_m = 6.4e6, largest_distance_m = 1e9;  // of the position from the centre
+  double min_probability = 1e-6;                            // of lines that miss each other so far
 };
 
 /// A position where lines of sight of two or more sites meet.

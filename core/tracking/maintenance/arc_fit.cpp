@@ -12,7 +12,7 @@ namespace {
 
 constexpr double converged = 0.01;  // chi-square that a step may leave
 // Added to variances of 1: rounding may leave a covariance without a root.
-constexpr double least_relative = 1e-13;
+constexpr double min_relative = 1e-13;
 constexpr double least_apart_s = 1.0;  // of a manoeuvre from both ends of an arc
 
 /// Root of a covariance; rows that are known have none.
@@ -22,7 +22,7 @@ std::optional<OrbitMatrix> root_of(const OrbitMatrix& covariance) {
     if (sigma[i] == 0) sigma[i] = 1.0;
   OrbitMatrix scaled = sigma.cwiseInverse().asDiagonal() * covariance *
                        OrbitMatrix(sigma.cwiseInverse().asDiagonal());
-  for (int i = 0; i < orbit_size; ++i) scaled(i, i) += covariance(i, i) > 0 ? least_relative : 1.0;
+  for (int i = 0; i < orbit_size; ++i) scaled(i, i) += covariance(i, i) > 0 ? min_relative : 1.0;
   const Eigen::LLT<OrbitMatrix> llt(scaled);
   if (llt.info() != Eigen::Success) return std::nullopt;
   OrbitMatrix root = sigma.asDiagonal() * OrbitMatrix(llt.matrixL());
@@ -205,8 +205,8 @@ void ArcFit::move(const Eigen::VectorXd& by) {
   }
 }
 
-std::string_view ArcFit::iterate(int most_iterations) {
-  for (int i = 0; i < most_iterations && left_ > converged; ++i) {
+std::string_view ArcFit::iterate(int max_iterations) {
+  for (int i = 0; i < max_iterations && left_ > converged; ++i) {
     const ArcFit before = *this;
     double share = 1.0;
     for (int halvings = 0; halvings < 6; ++halvings, share *= 0.4) {

@@ -46,7 +46,7 @@ class ArcFit {
 
   /// Iterates until a step would lower the sum of squares by less than 0.01. Returns the reason if
   /// a path ends.
-  std::string_view iterate(int most_iterations = 12);
+  std::string_view iterate(int max_iterations = 12);
 
   /// Sum of squares of whitened residuals and of unknowns over their priors' errors.
   double cost() const { return cost_; }

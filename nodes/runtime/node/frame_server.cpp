@@ -18,7 +18,7 @@ using std::chrono::nanoseconds;
 constexpr milliseconds look_interval{20};  // between checks of connections, while there are any
 constexpr milliseconds idle{1000};
 constexpr int requests_at_once = 256;
-constexpr std::size_t remembered_readers = 2 * FrameServer::most_readers;
+constexpr std::size_t remembered_readers = 2 * FrameServer::max_readers;
 constexpr int unread_ms = 30'000;  // after which the system disconnects a reader that reads nothing
 
 /// Keeps the bytes of an answer until ZeroMQ has sent them.
@@ -36,15 +36,15 @@ void release(void*, void* hint) {
 }
 
 ConnectionLimits limits() {
-  constexpr std::size_t readers = FrameServer::most_readers;
-  return {.usual_strangers = readers, .most_strangers = readers, .stranger_bytes = 128 << 10};
+  constexpr std::size_t readers = FrameServer::max_readers;
+  return {.usual_strangers = readers, .max_strangers = readers, .stranger_bytes = 128 << 10};
 }
 
 }  // namespace
 
 zmq::socket_t FrameServer::make_socket_of(zmq::context_t& context) {
   zmq::socket_t socket = make_socket(context, zmq::socket_type::router, max_question_bytes);
-  socket.set(zmq::sockopt::sndhwm, FrameServer::most_unread);
+  socket.set(zmq::sockopt::sndhwm, FrameServer::max_unread);
   socket.set(zmq::sockopt::rcvhwm, 4);
   socket.set(zmq::sockopt::tcp_maxrt, unread_ms);
   socket.set(zmq::sockopt::linger, 500);  // for last answers
@@ -122,7 +122,7 @@ void FrameServer::answer_requests() {
   for (auto at = readers_.begin(); at != readers_.end();) {
     auto& [peer, reader] = *at;
     std::optional<KeptFrames::Answer> answer;
-    if (reader.waits && *reader.unread < most_unread && *under_way_bytes_ < most_under_way_bytes)
+    if (reader.waits && *reader.unread < max_unread && *under_way_bytes_ < max_under_way_bytes)
       answer = frames_.answer(reader.request, run_id_);
     if (!answer) {
       ++at;

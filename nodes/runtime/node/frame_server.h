@@ -17,11 +17,11 @@ namespace dmise {
 /// that does not read. The sensor waits for no reader.
 class FrameServer {
  public:
-  static constexpr int most_readers = 64;  // connections; beyond, the oldest are closed
+  static constexpr int max_readers = 64;  // connections; beyond, the oldest are closed
   /// Answers under way, of files in memory; requests beyond wait.
-  static constexpr std::int64_t most_under_way_bytes = std::int64_t(256) << 20;
+  static constexpr std::int64_t max_under_way_bytes = std::int64_t(256) << 20;
   /// Answers with a frame that one reader has not read; its next request waits.
-  static constexpr int most_unread = 2;
+  static constexpr int max_unread = 2;
 
   /// Settings of the socket, before it is bound.
   static zmq::socket_t make_socket_of(zmq::context_t& context);

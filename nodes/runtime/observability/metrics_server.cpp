@@ -78,7 +78,7 @@ class Clients {
     for (const Client& client : clients_) close(client.fd);
   }
   void add(int fd) {
-    if (clients_.size() >= MetricsServer::most_clients) {
+    if (clients_.size() >= MetricsServer::max_clients) {
       close(clients_.front().fd);
       clients_.pop_front();
     }

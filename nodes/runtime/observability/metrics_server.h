@@ -9,11 +9,11 @@ namespace dmise {
 
 /// Serves one page at /metrics over HTTP/1.1 from a thread of its own. Clients are served
 /// concurrently without blocking: each has `client_deadline` from its connection to the last byte
-/// of its answer, and with `most_clients` connections the oldest is closed for the next.
+/// of its answer, and with `max_clients` connections the oldest is closed for the next.
 class MetricsServer {
  public:
   static constexpr std::chrono::seconds client_deadline{5};
-  static constexpr std::size_t most_clients = 64;
+  static constexpr std::size_t max_clients = 64;
   static constexpr std::size_t longest_request = 8192;  // bytes of its head
 
   /// `page`: called in the server's thread for each request. Throws `Error` with the reason if the

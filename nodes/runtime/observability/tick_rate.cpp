@@ -12,9 +12,9 @@ void TickRate::take(Tick done, double now_s) {
 }
 
 double TickRate::window_s() const {
-  constexpr double least_s = 15.0;
+  constexpr double min_s = 15.0;
   const std::size_t n = news_.size();
-  return n < 2 ? least_s : std::max(least_s, 3.0 * (news_[n - 1].at_s - news_[n - 2].at_s));
+  return n < 2 ? min_s : std::max(min_s, 3.0 * (news_[n - 1].at_s - news_[n - 2].at_s));
 }
 
 double TickRate::ticks_per_s() const {

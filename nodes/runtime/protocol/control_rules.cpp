@@ -11,9 +11,9 @@ namespace {
 
 using Fault = std::optional<std::string>;
 
-constexpr std::int64_t most_ticks = std::int64_t(1) << 40;
+constexpr std::int64_t max_ticks = std::int64_t(1) << 40;
 constexpr std::size_t longest_name = 256;
-constexpr int most_topics = 4096;
+constexpr int max_topics = 4096;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
@@ -24,12 +24,12 @@ bool is_name(const std::string& text) { return !text.empty() && is_text(text); }
 
 template <class Texts>
 bool are_names(const Texts& texts) {
-  return texts.size() <= most_topics && std::all_of(texts.begin(), texts.end(), is_name);
+  return texts.size() <= max_topics && std::all_of(texts.begin(), texts.end(), is_name);
 }
 
-bool is_tick(std::int64_t tick) { return tick >= 0 && tick <= most_ticks; }
-bool is_tick_or_none(std::int64_t tick) { return tick >= -1 && tick <= most_ticks; }
-bool is_count(std::uint64_t ticks) { return ticks <= std::uint64_t(most_ticks); }
+bool is_tick(std::int64_t tick) { return tick >= 0 && tick <= max_ticks; }
+bool is_tick_or_none(std::int64_t tick) { return tick >= -1 && tick <= max_ticks; }
+bool is_count(std::uint64_t ticks) { return ticks <= std::uint64_t(max_ticks); }
 bool is_duration(double s, double limit_s) { return s >= 0.0 && s <= limit_s; }  // false for NaN
 
 Fault unless(bool holds, const char* fault) { return holds ? std::nullopt : Fault(fault); }
@@ -86,8 +86,8 @@ Fault fault_in(const v1::Join& join) {
       !is_text(join.frames_endpoint()) || !good(join.broker()))
     return "join: invalid address";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
-                    is_count(join.offset_ticks()) && join.schedules_size() <= most_topics &&
-                    all_good(join.schedules()) && join.delays_size() <= most_topics &&
+                    is_count(join.offset_ticks()) && join.schedules_size() <= max_topics &&
+                    all_good(join.schedules()) && join.delays_size() <= max_topics &&
                     all_good(join.delays()),
                 "join: period, offset, look-back and delays must be ticks of a run");
 }
@@ -97,7 +97,7 @@ bool good(const v1::Publisher& publisher) {
          are_names(publisher.direct_topics()) && is_text(publisher.direct_endpoint()) &&
          is_text(publisher.resend_endpoint()) && is_text(publisher.frames_endpoint()) &&
          is_count(publisher.keep_ticks()) && is_count(publisher.period_ticks()) &&
-         is_count(publisher.offset_ticks()) && publisher.schedules_size() <= most_topics &&
+         is_count(publisher.offset_ticks()) && publisher.schedules_size() <= max_topics &&
          all_good(publisher.schedules());
 }
 
@@ -132,7 +132,7 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
       return fault_in(message.join());
     case v1::NodeMessage::kDone:
       return unless(is_tick(message.done().tick()) &&
-                        message.done().published_size() <= most_topics &&
+                        message.done().published_size() <= max_topics &&
                         all_good(message.done().published()),
                     "done: invalid tick or topic");
     case v1::NodeMessage::kHeartbeat:

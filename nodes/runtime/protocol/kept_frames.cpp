@@ -23,7 +23,7 @@ void KeptFrames::add(const FrameReport& report, std::function<FrameBytes()> load
     throw Error("frame " + std::to_string(added.number) + " is not later than those kept");
   kept_.push_back(std::move(added));
   held_bytes_ += held_bytes;
-  while (kept_.size() > most_frames || (held_bytes_ > most_bytes && kept_.size() > 1)) {
+  while (kept_.size() > max_frames || (held_bytes_ > max_bytes && kept_.size() > 1)) {
     held_bytes_ -= kept_.front().held_bytes;
     kept_.pop_front();
   }

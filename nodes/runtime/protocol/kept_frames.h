@@ -24,8 +24,8 @@ struct FrameBytes {
 /// frames and another thread answers, so that the sensor never waits for a reader.
 class KeptFrames {
  public:
-  static constexpr std::size_t most_frames = 128;
-  static constexpr std::size_t most_bytes = std::size_t(64) << 20;  // in memory; one frame at least
+  static constexpr std::size_t max_frames = 128;
+  static constexpr std::size_t max_bytes = std::size_t(64) << 20;  // in memory; one frame at least
 
   explicit KeptFrames(std::string sensor) : sensor_(std::move(sensor)) {}
   /// `changed` is called when a frame is added and by `end`, from the thread that does it.

@@ -57,14 +57,14 @@ ConnectionLimits limits_for(std::size_t nodes, double share) {
   const double left = known ? share * (double(files.rlim_cur) - needed) : 1024.0;
   ConnectionLimits limits;
   // While nodes join, their connections are still anonymous.
-  limits.most_strangers = std::size_t(std::clamp(left, 16.0, 1024.0)) + 2 * nodes;
-  limits.usual_strangers = limits.most_strangers / 2;
+  limits.max_strangers = std::size_t(std::clamp(left, 16.0, 1024.0)) + 2 * nodes;
+  limits.usual_strangers = limits.max_strangers / 2;
   return limits;
 }
 
 ConnectionLimits bytes_alone(std::int64_t stranger_bytes) {
   constexpr std::size_t any = 1 << 20;
-  return {.usual_strangers = any, .most_strangers = any, .stranger_bytes = stranger_bytes};
+  return {.usual_strangers = any, .max_strangers = any, .stranger_bytes = stranger_bytes};
 }
 
 PeerMonitor::PeerMonitor(zmq::context_t& context, zmq::socket_t& watched,
@@ -168,7 +168,7 @@ std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
   while (std::size_t(last - first) > limits_.usual_strangers &&
          now - (*first)->since >= limits_.grace)
     ++first;
-  last = std::min(last, first + std::ptrdiff_t(limits_.most_strangers));
+  last = std::min(last, first + std::ptrdiff_t(limits_.max_strangers));
   const std::size_t refused = strangers.size() - std::size_t(last - first);
   if (refused == 0) return closed;
   strangers.erase(first, last);

@@ -14,7 +14,7 @@ struct ConnectionLimits {
   /// Limits of anonymous connections: beyond this number, the oldest are closed after `grace`;
   /// beyond `most`, the newest at once.
   std::size_t usual_strangers = 256;
-  std::size_t most_strangers = 1024;
+  std::size_t max_strangers = 1024;
   std::chrono::nanoseconds grace = std::chrono::seconds(2);
   /// Bytes of one connection received but not read: waiting messages, and incomplete messages of
   /// many frames. Small for anonymous connections, because an empty frame has two bytes on the wire
