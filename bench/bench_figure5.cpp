@@ -64,7 +64,7 @@ Day whole_day(const std::vector<MeanElements>& elements, const SensorConfig& sen
   Day day;
   Threads one(1);
   const double start = thread_seconds();
-  const SkyHours sky(clock, grid.from, grid.last());
+  const EphemerisTable sky(clock, grid.from, grid.last());
   const Sgp4Batch batch(elements);
   const SensorTrack track(sensor, sky, batch, std::nullopt, std::nullopt);
   day.seen = find_sightings(batch, track, grid, one, {.intervals = false}).seen;
@@ -90,7 +90,7 @@ int bench_figure5(bool json) {
 
   const bool whole = std::getenv("DMISE_BENCH_WHOLE") != nullptr;
   const std::size_t first = whole ? 0 : 4000, steps = whole ? grid.steps : 360;
-  const SkyHours sky(clock, grid.from, grid.last());
+  const EphemerisTable sky(clock, grid.from, grid.last());
   const Sgp4Batch batch(elements);
   const SensorTrack track(sensor, sky, batch, std::nullopt, std::nullopt);
   const double start = thread_seconds();

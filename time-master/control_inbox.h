@@ -6,7 +6,7 @@
 #include <zmq.hpp>
 
 #include "nodes/runtime/transport/peer_monitor.h"
-#include "time-master/stranger_queue.h"
+#include "time-master/unauthenticated_peers.h"
 
 namespace dmise {
 
@@ -43,7 +43,7 @@ class ControlInbox {
 
   zmq::socket_t& router_;
   PeerMonitor& connections_;
-  StrangerQueue<ControlMessage> strangers_;
+  UnauthenticatedPeers<ControlMessage> strangers_;
   std::uint64_t ignored_ = 0;
 };
 

@@ -17,7 +17,7 @@
 #include "sensors/frame/frame_pipeline.h"
 #include "sensors/frame/make_sensor.h"
 #include "sensors/objects/world_source.h"
-#include "sensors/survey/exposure_looks.h"
+#include "sensors/survey/exposure_forecast.h"
 
 namespace dmise {
 namespace {
@@ -131,7 +131,7 @@ std::vector<Placed> place_objects(Scenario& scenario, const Clock& clock, Thread
 }
 
 /// By the first object of a frame, and the object.
-using Looks = std::map<std::pair<std::uint32_t, std::uint32_t>, Look>;
+using Looks = std::map<std::pair<std::uint32_t, std::uint32_t>, ExpectedDetection>;
 
 /// What the survey expects in each frame of its own objects and those of the frames beside it.
 Looks looks_of(const Scenario& scenario, const Clock& clock, const std::vector<Placed>& placed,
@@ -146,8 +146,9 @@ Looks looks_of(const Scenario& scenario, const Clock& clock, const std::vector<P
          k < std::min<std::size_t>(placed.size(), from + 2 * in_frame); ++k)
       near.push_back(k);
     const SensorConfig& sensor = *placed[from].sensor;
-    const auto looks = SensorLooks(scene, sensor).of(frame_times(sensor, placed[from].frame), near);
-    for (const Look& look : looks->looks) out[{from, look.object}] = look;
+    const auto looks =
+        SensorForecast(scene, sensor).of(frame_times(sensor, placed[from].frame), near);
+    for (const ExpectedDetection& look : looks->looks) out[{from, look.object}] = look;
   }
   return out;
 }

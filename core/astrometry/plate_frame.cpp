@@ -30,13 +30,13 @@ double allowed_radial_px(const PlateFit& fit, double before_px) {
 
 }  // namespace
 
-PlateFrame::PlateFrame(std::span<const PlateSource> sources, const PlateBelief& belief,
+PlateFrame::PlateFrame(std::span<const PlateSource> sources, const PlateHint& hint,
                        const PlateSky& sky, const PlateSearch& search)
-    : belief_(belief), sky_(sky), search_(search) {
+    : hint_(hint), sky_(sky), search_(search) {
   const auto usable = [&](const PlateSource& s) {
     const auto& c = s.covariance_px2;
     return std::isfinite(s.x_px) && std::isfinite(s.y_px) && s.x_px >= -0.5 && s.y_px >= -0.5 &&
-           s.x_px <= belief.columns - 0.5 && s.y_px <= belief.rows - 0.5 && std::isfinite(s.flux) &&
+           s.x_px <= hint.columns - 0.5 && s.y_px <= hint.rows - 0.5 && std::isfinite(s.flux) &&
            s.flux > 0 && c[0] >= 0 && c[2] >= 0 && std::isfinite(c[0] + c[1] + c[2]);
   };
   for (std::size_t i = 0; i < sources.size(); ++i)
@@ -67,7 +67,7 @@ PlateFrame::PlateFrame(std::span<const PlateSource> sources, const PlateBelief& 
   }
   original_ = std::move(kept);
   bright_ = std::min(sources_.size(), growing_sources);
-  bright_grid_.emplace(std::span(sources_).first(bright_), belief.columns, belief.rows);
+  bright_grid_.emplace(std::span(sources_).first(bright_), hint.columns, hint.rows);
 }
 
 double PlateFrame::reach_rad(const PlateModel& model) const {
@@ -79,7 +79,7 @@ double PlateFrame::reach_rad(const PlateModel& model) const {
 std::vector<SeenStar> PlateFrame::stars_around(const PlateModel& model, std::size_t sources) const {
   constexpr double wider = 1.15;
   const double r = wider * half_diagonal_px();
-  const double share = double(belief_.columns) * belief_.rows / (pi * r * r);
+  const double share = double(hint_.columns) * hint_.rows / (pi * r * r);
   return sky_.brightest(model.axis(), std::min(wider * reach_rad(model), pi),
                         std::size_t(1.3 * double(sources) / share) + 20);
 }
@@ -95,13 +95,13 @@ bool PlateFrame::stars_beside(const PlateModel& model, std::span<const std::uint
   for (const SeenStar& star : sky_.brightest(here, 2.2 * size_rad, 24)) {
     if (std::find(pattern.begin(), pattern.end(), star.index) != pattern.end()) continue;
     const auto at = model.pixel(star.direction);
-    if (!at || at->x_px < 0 || at->y_px < 0 || at->x_px > belief_.columns - 1 ||
-        at->y_px > belief_.rows - 1)
+    if (!at || at->x_px < 0 || at->y_px < 0 || at->x_px > hint_.columns - 1 ||
+        at->y_px > hint_.rows - 1)
       continue;
     const double within = reach.at(*at);
     if (within < 0) continue;
     const double chance = std::min(
-        0.5, double(bright_) * pi * within * within / (double(belief_.columns) * belief_.rows));
+        0.5, double(bright_) * pi * within * within / (double(hint_.columns) * hint_.rows));
     const bool hit = bright_grid_->nearest(*at, within) >= 0;
     odds += hit ? std::log(0.6 / chance) : std::log(0.4 / (1 - chance));
     ++tested;
@@ -116,7 +116,7 @@ std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPositio
   const auto stars = stars_around(model, bright_);
   double known_px = size_px, rms_px = 1.0;
   for (double radius_px = 1.5 * size_px;; radius_px *= 1.6) {
-    const auto pairs = match(model, stars, sources, *bright_grid_, belief_.columns, belief_.rows,
+    const auto pairs = match(model, stars, sources, *bright_grid_, hint_.columns, hint_.rows,
                              {.from = from,
                               .near_px = std::max(1.5, 3 * rms_px),
                               .known_px = known_px,
@@ -221,10 +221,10 @@ std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
   while (count < sources_.size() && exact < search_.max_stars)
     exact += !sources_[count++].saturated;
   const auto sources = std::span(sources_).first(count);
-  const SourceGrid grid(sources, belief_.columns, belief_.rows);
+  const SourceGrid grid(sources, hint_.columns, hint_.rows);
   solution.stars = stars_around(model, count);
   const auto pairs_within = [&](double near_px) {
-    auto pairs = match(model, solution.stars, sources, grid, belief_.columns, belief_.rows,
+    auto pairs = match(model, solution.stars, sources, grid, hint_.columns, hint_.rows,
                        {.near_px = near_px});
     std::size_t sharp = 0;
     for (PlateMatch& m : pairs) {
@@ -252,7 +252,7 @@ std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
     solution.reach_px = std::max(solution.reach_px, std::hypot(at.x_px, at.y_px));
   }
   solution.log_odds = log_odds(best->model, solution.stars, *best, solution.matches, count,
-                               belief_.columns, belief_.rows);
+                               hint_.columns, hint_.rows);
   for (PlateMatch& m : solution.matches) m.source = original_[m.source];
   return solution;
 }

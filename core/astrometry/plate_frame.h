@@ -10,7 +10,7 @@
 namespace dmise {
 
 /// What is believed of a camera before its frame is solved.
-struct PlateBelief {
+struct PlateHint {
   int columns = 0, rows = 0;
   Projection projection;
   /// 0: not known. The axis is taken at the image's centre.
@@ -21,7 +21,7 @@ struct PlateBelief {
   std::optional<Vec<Gcrs>> axis;
 };
 
-/// How far beliefs may be wrong, and what to look for without any.
+/// How far hints may be wrong, and what to look for without any.
 struct PlateSearch {
   double pointing_error_rad = 3 * deg, roll_error_rad = 8 * deg;
   double focal_error = 0.05;  // relative
@@ -61,7 +61,7 @@ class PlateFrame {
  public:
   /// Sources in any order; those with numbers that are not finite, out of the frame or within half
   /// a pixel of a brighter one are ignored.
-  PlateFrame(std::span<const PlateSource> sources, const PlateBelief& belief, const PlateSky& sky,
+  PlateFrame(std::span<const PlateSource> sources, const PlateHint& hint, const PlateSky& sky,
              const PlateSearch& search);
 
   /// By falling flux.
@@ -69,8 +69,8 @@ class PlateFrame {
   PixelPosition place(std::size_t source) const {
     return {sources_[source].x_px, sources_[source].y_px};
   }
-  PixelPosition centre() const { return {(belief_.columns - 1) / 2.0, (belief_.rows - 1) / 2.0}; }
-  double half_diagonal_px() const { return 0.5 * std::hypot(belief_.columns, belief_.rows); }
+  PixelPosition centre() const { return {(hint_.columns - 1) / 2.0, (hint_.rows - 1) / 2.0}; }
+  double half_diagonal_px() const { return 0.5 * std::hypot(hint_.columns, hint_.rows); }
   /// Angle from a plate's axis to the farthest corner.
   double reach_rad(const PlateModel& model) const;
 
@@ -96,7 +96,7 @@ class PlateFrame {
     return search_.star_sigma_rad * model.focal_length_px;
   }
 
-  const PlateBelief& belief_;
+  const PlateHint& hint_;
   const PlateSky& sky_;
   const PlateSearch& search_;
   std::vector<PlateSource> sources_;     // by falling flux

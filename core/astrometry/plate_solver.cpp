@@ -31,8 +31,8 @@ using Stars = std::array<std::uint32_t, 4>;
 
 class PlateSearcher {
  public:
-  PlateSearcher(std::span<const PlateSource> sources, const PlateBelief& belief,
-                const PlateSky& sky, const PlateSearch& search, PatternCache& cache);
+  PlateSearcher(std::span<const PlateSource> sources, const PlateHint& hint, const PlateSky& sky,
+                const PlateSearch& search, PatternCache& cache);
   PlateSolution solve();
 
  private:
@@ -49,7 +49,7 @@ class PlateSearcher {
   std::optional<Vec<CameraFrame>> upright(const Trial& trial, double focal_length_px,
                                           std::size_t source) const;
 
-  const PlateBelief& belief_;
+  const PlateHint& hint_;
   const PlateSky& sky_;
   const PlateSearch& search_;
   PatternCache& cache_;
@@ -59,29 +59,25 @@ class PlateSearcher {
   std::optional<PlateSolution> found_;
 };
 
-PlateSearcher::PlateSearcher(std::span<const PlateSource> sources, const PlateBelief& belief,
+PlateSearcher::PlateSearcher(std::span<const PlateSource> sources, const PlateHint& hint,
                              const PlateSky& sky, const PlateSearch& search, PatternCache& cache)
-    : belief_(belief),
-      sky_(sky),
-      search_(search),
-      cache_(cache),
-      frame_(sources, belief, sky, search) {}
+    : hint_(hint), sky_(sky), search_(search), cache_(cache), frame_(sources, hint, sky, search) {}
 
 Trial PlateSearcher::trial(double narrow_rad, double middle_rad, double wide_rad) const {
   const auto focal_px = [&](double width_rad) {
-    const double fold = belief_.projection.fold_rad().value_or(pi);
-    return 0.5 * belief_.columns /
-           belief_.projection.height(std::min({0.5 * width_rad, 0.999 * fold, 85 * deg}));
+    const double fold = hint_.projection.fold_rad().value_or(pi);
+    return 0.5 * hint_.columns /
+           hint_.projection.height(std::min({0.5 * width_rad, 0.999 * fold, 85 * deg}));
   };
-  return {belief_.projection, focal_px(middle_rad), focal_px(wide_rad), focal_px(narrow_rad)};
+  return {hint_.projection, focal_px(middle_rad), focal_px(wide_rad), focal_px(narrow_rad)};
 }
 
 std::vector<Trial> PlateSearcher::trials(double narrowest_rad, double widest_rad) const {
   std::vector<Trial> list;
-  if (belief_.focal_length_px > 0) {
-    const double f = belief_.focal_length_px;
+  if (hint_.focal_length_px > 0) {
+    const double f = hint_.focal_length_px;
     list.push_back(
-        {belief_.projection, f, f * (1 - search_.focal_error), f * (1 + search_.focal_error)});
+        {hint_.projection, f, f * (1 - search_.focal_error), f * (1 + search_.focal_error)});
   } else if (widest_rad <= flat_rad) {
     list.push_back(trial(narrowest_rad, narrowest_rad, 1.1 * widest_rad));
   } else {
@@ -89,9 +85,8 @@ std::vector<Trial> PlateSearcher::trials(double narrowest_rad, double widest_rad
     for (double w = narrowest_rad * half; w / half < widest_rad; w *= width_step)
       list.push_back(trial(w / half / 1.05, w, w * half * 1.05));
   }
-  const bool told = belief_.camera_from_gcrs.has_value();
-  const bool mirrored =
-      told && PlateModel{.camera_from_gcrs = *belief_.camera_from_gcrs}.mirrored();
+  const bool told = hint_.camera_from_gcrs.has_value();
+  const bool mirrored = told && PlateModel{.camera_from_gcrs = *hint_.camera_from_gcrs}.mirrored();
   const std::size_t count = list.size();
   for (std::size_t i = 0; i < count; ++i) {
     list[i].mirrored = mirrored;
@@ -105,16 +100,16 @@ std::vector<Trial> PlateSearcher::trials(double narrowest_rad, double widest_rad
 /// Rank of the stars of the whole sky of which a frame of that width shows some 300.
 double PlateSearcher::rank_in_frame(double width_rad) const {
   const double w = std::min(width_rad, 120 * deg);
-  return 300 * 4 * pi / std::max(w * w * belief_.rows / belief_.columns, 1e-12);
+  return 300 * 4 * pi / std::max(w * w * hint_.rows / hint_.columns, 1e-12);
 }
 
 std::vector<std::uint32_t> PlateSearcher::stars_near_belief(double width_rad) const {
-  PlateModel model{.projection = belief_.projection,
+  PlateModel model{.projection = hint_.projection,
                    .camera_from_gcrs = {},
                    .focal_length_px = trials(width_rad, width_rad)[0].focal_low_px,
                    .centre = frame_.centre()};
-  if (belief_.camera_from_gcrs) model.camera_from_gcrs = *belief_.camera_from_gcrs;
-  return sky_.catalogued(belief_.camera_from_gcrs ? model.axis() : *belief_.axis,
+  if (hint_.camera_from_gcrs) model.camera_from_gcrs = *hint_.camera_from_gcrs;
+  return sky_.catalogued(hint_.camera_from_gcrs ? model.axis() : *hint_.axis,
                          frame_.reach_rad(model) + search_.pointing_error_rad,
                          2 * rank_in_frame(width_rad));
 }
@@ -177,11 +172,10 @@ void PlateSearcher::try_round(const PatternIndex& index, const Trial& trial, std
 
 bool PlateSearcher::near_belief(const Trial& trial,
                                 const Rotation<CameraFrame, Gcrs>& upright) const {
-  if (!belief_.camera_from_gcrs)
-    return !belief_.axis || angle_rad(upright.inverse() * Vec<CameraFrame>{0, 0, 1},
-                                      *belief_.axis) <= search_.pointing_error_rad;
-  const auto believed =
-      trial.mirrored ? flipped(*belief_.camera_from_gcrs) : *belief_.camera_from_gcrs;
+  if (!hint_.camera_from_gcrs)
+    return !hint_.axis || angle_rad(upright.inverse() * Vec<CameraFrame>{0, 0, 1}, *hint_.axis) <=
+                              search_.pointing_error_rad;
+  const auto believed = trial.mirrored ? flipped(*hint_.camera_from_gcrs) : *hint_.camera_from_gcrs;
   const Rotation<CameraFrame, CameraFrame> by = upright * believed.inverse();
   const double tilt = std::acos(std::clamp(by.m[2][2], -1.0, 1.0));
   const Quaternion q = quaternion_of(by);
@@ -230,7 +224,7 @@ void PlateSearcher::judge(const PlateModel& model) {
   auto solution = frame_.fit(model);
   if (!solution) return;
   const double priors =
-      belief_.camera_from_gcrs ? 2 * search_.focal_error * search_.roll_error_rad / pi : 1.0;
+      hint_.camera_from_gcrs ? 2 * search_.focal_error * search_.roll_error_rad / pi : 1.0;
   solution->log_odds -= std::log(std::max(100.0, patterns_ * looked_up_ * priors));
   solution->tried = tried_;
   if (solution->log_odds >= search_.min_log_odds) found_ = std::move(solution);
@@ -242,9 +236,9 @@ PlateSolution PlateSearcher::solve() {
   if (frame_.sources().size() < 3)
     fail("3 sources are needed, got " + std::to_string(frame_.sources().size()));
   double narrow = search_.narrowest_rad, wide = search_.widest_rad;
-  if (belief_.focal_length_px > 0) {
+  if (hint_.focal_length_px > 0) {
     const auto half =
-        belief_.projection.axis_angle_rad(0.5 * belief_.columns / belief_.focal_length_px, 0.0);
+        hint_.projection.axis_angle_rad(0.5 * hint_.columns / hint_.focal_length_px, 0.0);
     narrow = wide = 2 * half.value_or(0.5 * pi);
   }
   // Wide frames first: they need few stars of the catalogue.
@@ -254,7 +248,7 @@ PlateSolution PlateSearcher::solve() {
     if (found_ || from > to || (flat && from >= flat_rad)) continue;
     const auto list = trials(from, to);
     // Without a focal length patterns of all sizes are needed; those of the whole sky are kept.
-    const bool is_near = belief_.camera_from_gcrs || (belief_.axis && belief_.focal_length_px > 0);
+    const bool is_near = hint_.camera_from_gcrs || (hint_.axis && hint_.focal_length_px > 0);
     if (!is_near) {
       try_all(cache_.whole_sky(sky_, rank_in_frame(from)), list);
       continue;
@@ -271,10 +265,10 @@ PlateSolution PlateSearcher::solve() {
 
 }  // namespace
 
-PlateSolution solve_plate(std::span<const PlateSource> sources, const PlateBelief& belief,
+PlateSolution solve_plate(std::span<const PlateSource> sources, const PlateHint& hint,
                           const PlateSky& sky, const PlateSearch& search, PatternCache* cache) {
   PatternCache own;
-  return PlateSearcher(sources, belief, sky, search, cache ? *cache : own).solve();
+  return PlateSearcher(sources, hint, sky, search, cache ? *cache : own).solve();
 }
 
 }  // namespace dmise

@@ -36,14 +36,14 @@ Observer observer_of(const FrameHeader& header, FrameNotes& notes) {
   return o;
 }
 
-PlateBelief belief_of(const Frame& frame, bool blind) {
+PlateHint belief_of(const Frame& frame, bool blind) {
   const FrameHeader& h = frame.header;
-  PlateBelief b{.columns = frame.counts.columns,
-                .rows = frame.counts.rows,
-                .projection = h.projection,
-                .focal_length_px = 0.0,
-                .camera_from_gcrs = std::nullopt,
-                .axis = std::nullopt};
+  PlateHint b{.columns = frame.counts.columns,
+              .rows = frame.counts.rows,
+              .projection = h.projection,
+              .focal_length_px = 0.0,
+              .camera_from_gcrs = std::nullopt,
+              .axis = std::nullopt};
   if (blind) return b;
   if (!h.unknown.has(FrameFact::focal_length)) b.focal_length_px = h.focal_length_px;
   if (h.unknown.has(FrameFact::pointing)) {
@@ -92,7 +92,7 @@ Wcs wcs_of(const PlateSolution& plate, const PlateSky& sky, int columns, int row
 }
 
 /// Why no stars are where the header points, if its site and time put that below the horizon.
-std::string below_horizon(const PlateBelief& belief, const PlateSky& sky) {
+std::string below_horizon(const PlateHint& belief, const PlateSky& sky) {
   auto axis = belief.axis;
   if (belief.camera_from_gcrs)
     axis = belief.camera_from_gcrs->inverse() * Vec<CameraFrame>{0, 0, 1};
@@ -107,7 +107,7 @@ std::string below_horizon(const PlateBelief& belief, const PlateSky& sky) {
 
 /// The plate near the believed axis; elsewhere, if there is none: headers may name a target that
 /// is beside the frame.
-PlateSolution solved_plate(std::span<const PlateSource> sources, PlateBelief belief,
+PlateSolution solved_plate(std::span<const PlateSource> sources, PlateHint belief,
                            const PlateSky& sky, const SolveSettings& settings) {
   if (belief.axis && settings.elsewhere) {
     try {
@@ -138,7 +138,7 @@ FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveS
       .unknown_mount = unknown_mount};
   const auto sources = find_star_sources(frame.counts, search, threads);
   out.sources = sources.size();
-  const PlateBelief belief = belief_of(frame, settings.blind);
+  const PlateHint belief = belief_of(frame, settings.blind);
   try {
     out.plate = solved_plate(sources, belief, sky, settings);
   } catch (const Error& error) {

@@ -16,7 +16,7 @@ namespace dmise {
 namespace {
 
 constexpr double common_error_mag = 0.01;   // of the stars' measurement, equal for all
-constexpr double gaussian_error_mag = 0.1;  // likewise, by Gaussians: wings are 0 to 0.23 mag
+constexpr double gaussian_error_mag = 0.1;  // equal for all, by Gaussians: wings are 0 to 0.23 mag
 constexpr double min_snr = 12.0;            // of stars that are found however noise dims them
 constexpr double low_deviations = 2.5;      // of the stars' scatter, by which they may be fainter
 constexpr double max_shared = 0.1;          // of a star's light, from neighbours

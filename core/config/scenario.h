@@ -107,7 +107,7 @@ struct Scenario {
 /// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got
 /// value`, also for a value that is a distribution: see `ScenarioDraws`.
 Scenario load_scenario(const std::string& path);
-/// The same for one that is parsed.
+/// Reads a scenario that is parsed.
 class YamlValue;
 Scenario read_scenario(const YamlValue& root, OwnNodeModels models = OwnNodeModels::programs);
 

@@ -19,7 +19,7 @@ namespace dmise {
 namespace {
 
 constexpr double bend_error = 0.3;       // relative, of a bend that is not fitted
-constexpr double slope_error = 0.3;      // likewise of a change of brightness
+constexpr double slope_error = 0.3;      // relative, of a change of brightness
 constexpr double most_off_middle = 0.5;  // of mid exposure, in half lengths, where it is corrected
 
 struct Tangent {
@@ -51,7 +51,7 @@ std::array<double, 3> covariance_of(const Source& source, const PlaceBy& by) {
   return out;
 }
 
-/// The same as var(ra cos dec), cov, var(dec) [rad^2] around a pixel, including the error of the
+/// Covariance as var(ra cos dec), cov, var(dec) [rad^2] around a pixel, including the error of the
 /// WCS.
 std::array<double, 3> on_the_sky(const std::array<double, 3>& covariance_px2, const Wcs& wcs,
                                  PixelPosition at) {

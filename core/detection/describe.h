@@ -19,7 +19,7 @@ namespace dmise {
 /// covariance_rad2 includes the uncertainty of mid exposure and the error of the WCS.
 Detection describe(const Source& source, const FrameHeader& header);
 
-/// The same of what another detector found. Its centroid, ends, light and errors are taken as they
+/// Describes what another detector found. Its centroid, ends, light and errors are taken as they
 /// are. Between its ends a streak is a line through its centroid, of even light, which bends as the
 /// orbit does.
 Detection describe(const MeasuredSource& source, const FrameHeader& header, bool saturated,

@@ -60,8 +60,8 @@ Detector acting_detector(const Detector& detector, const EffectSet& effects);
 /// that of read noise.
 bool reads_after_others(const Detector& acting);
 
-/// The same with dark current and read noise drawn together with the photons, at the level of
-/// photon noise that draws Gaussian deviates; without read noise if the detector
+/// The acting detector with dark current and read noise drawn together with the photons, at the
+/// level of photon noise that draws Gaussian deviates; without read noise if the detector
 /// `reads_after_others`.
 Detector drawn_together(const Detector& acting, const EffectSet& effects);
 

@@ -11,7 +11,7 @@ namespace dmise {
 /// aberrations, whose point spread is not round, and for a radius <= 0.
 double aperture_fraction(const Optics& optics, double wavelength_m, double radius_px);
 
-/// The same of what is above the background of the ring, which has some of the point's own light:
+/// Fraction of what is above the background of the ring, which has some of the point's own light:
 /// for an Airy pattern and the usual aperture 0.2 to 0.3 % of it.
 double aperture_fraction(const Optics& optics, double wavelength_m, const Aperture& aperture);
 

@@ -24,7 +24,7 @@ double corner_in_circle(double x, double y, double radius) {
   return flat * y + under_circle(end) - under_circle(std::min(flat, end));
 }
 
-/// The same with signs: odd in x and in y.
+/// Area of a corner with signs: odd in x and in y.
 double signed_corner(double x, double y, double radius) {
   const double area = corner_in_circle(std::abs(x), std::abs(y), radius);
   return (x < 0) == (y < 0) ? area : -area;

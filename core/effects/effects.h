@@ -91,7 +91,7 @@ class EffectSet {
   void set(const EffectFacts& effect, bool on) {
     set_level(effect, !on ? 0 : effect.usual ? effect.unplanned() : effect.reference());
   }
-  /// The same as the user asks for it: no plan changes the level.
+  /// Sets the level that the user asks for: no plan changes the level.
   void force_level(const EffectFacts& effect, int level) {
     set_level(effect, level);
     forced_.insert(effect.name);

@@ -43,7 +43,7 @@ double rings_in_noise(int count, const PlanFacts& f, double source_e) {
   return std::min(largest, half_noise * left);
 }
 
-/// The same among the speckles of an object of `size_px`, which even out if they are many.
+/// Error among the speckles of an object of `size_px`, which even out if they are many.
 double speckles_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
   constexpr double of_speckles[] = {2.6, 1.5, 1.1, 0.75, 0.0};
   constexpr double peak = 4.0, narrow = 0.5, half_noise = 0.5;

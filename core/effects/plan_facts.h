@@ -97,9 +97,9 @@ struct PlanFacts {
   double star_rate_rad_per_s = 0.0, object_rate_rad_per_s = 0.0;
   // Stars.
   double stars = 0.0;                                  // whose places are computed, to the limit
-  std::array<double, star_limits> stars_brighter{};    // the same to each whole V magnitude
+  std::array<double, star_limits> stars_brighter{};    // stars to each whole V magnitude
   double brightest_star_e = 0.0;                       // light of one star in the field
-  std::array<double, star_limits> brightest_left_e{};  // the same of those beyond each limit
+  std::array<double, star_limits> brightest_left_e{};  // light of the brightest beyond each limit
   double star_trail_px = 0.0;                          // shortest
   double star_shift_rad = 0.0;  // of proper motion since the catalogue's epoch, largest
   double star_parallax_rad = 0.0;

@@ -39,10 +39,10 @@ struct RunProducts {
   std::vector<RunSensor> sensors;        // sites are on WGS 84, whatever the scenario's ellipsoid
   std::vector<RunFrame> frames;          // by time, sensor and index
   std::vector<Truth> truths;             // if they were asked for, in the same order
-  std::vector<Detection> detections;     // likewise
-  std::vector<Track> tracks;             // likewise, by time and id
+  std::vector<Detection> detections;     // by time, sensor and index
+  std::vector<Track> tracks;             // by time and id
   std::vector<RunCatalogue> catalogues;  // in the scenario's order
-  std::vector<RunObject> own_objects;    // likewise
+  std::vector<RunObject> own_objects;    // in the scenario's order
 
   /// "2018-01-21T00:15:10.000000000Z"
   std::string utc(SimTime t) const;

@@ -35,7 +35,7 @@ class FacetLight {
   /// Without `emits` the object has no thermal emission.
   FacetLight(Mesh mesh, const Band& band, bool emits = true);
 
-  /// The same object with its panel turned to the Sun (panel.h). Costs a copy, no band means.
+  /// This object with its panel turned to the Sun (panel.h). Costs a copy, no band means.
   FacetLight turned(const HingedPanel& panel, const Vec<Body>& to_sun) const;
 
   const Mesh& mesh() const { return mesh_; }
@@ -47,7 +47,7 @@ class FacetLight {
   /// photons/s/m2. Directions are unit vectors.
   double reflected_m2_per_sr(const Vec<Body>& to_sun, const Vec<Body>& to_viewer,
                              SimdLevel level = best_simd_level()) const;
-  /// The same for several sources.
+  /// Light reflected of several sources.
   double reflected_m2_per_sr(std::span<const LightSource> sources, const Vec<Body>& to_viewer,
                              SimdLevel level = best_simd_level()) const;
 

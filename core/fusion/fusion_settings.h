@@ -15,10 +15,10 @@ struct FusionSettings {
   double detection_probability = 0.9;  // of an object well above the limit, (0, 1)
   double false_alarms_per_frame = 1.0;
   double lost_after_s = 900.0;   // without a detection, of a confirmed track
-  double tentative_s = 120.0;    // likewise of a tentative one
+  double tentative_s = 120.0;    // without a detection, of a tentative track
   double start_window_s = 60.0;  // between the first and the last detection that start a track
   double simultaneous_s = 0.5;   // between detections of two sites that give a position
-  double arc_window_s = 240.0;   // likewise of an arc that one site alone sees
+  double arc_window_s = 240.0;   // within an arc that one site alone sees
   int arc_exposures = 4;         // least of such an arc, >= 4; 0: one site begins nothing
   double acceleration_noise_m2_per_s3 = 1e-6;
   // Error of a frame's directions that no detection knows [arcsec]: jitter, bias, drift.

@@ -28,7 +28,7 @@ using TakeFrame = std::function<void(const Frame&)>;
 void decode_frames(std::string_view bytes, const std::string& name, const FrameChoice& choice,
                    Threads& threads, const TakeFrame& take);
 
-/// The same of a file, optionally gzipped.
+/// Reads the frames of a file, optionally gzipped.
 void read_frames_of(const std::string& path, const FrameChoice& choice, Threads& threads,
                     const TakeFrame& take);
 

@@ -28,7 +28,7 @@ struct BoxWing {
 };
 Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_front,
               const Material& wing_back);
-/// The same with another material on the side of the body that faces +z.
+/// A box-wing with another material on the side of the body that faces +z.
 Mesh box_wing(const BoxWing& size, const Material& body, const Material& wing_front,
               const Material& wing_back, const Material& body_z);
 

@@ -92,7 +92,7 @@ double misplaced_by_pupils(const Optics& o, const FieldPlace& place, double wave
   return std::min({1.0, first, size_of(mean, here) + of_squares * second});
 }
 
-/// The same of Gaussians: 0.3 of a relative change of the shape is elsewhere.
+/// Share of the light that Gaussians misplace: 0.3 of a relative change of the shape is elsewhere.
 double misplaced_by_gaussians(const Optics& o, const FieldPlace& place, double wavelength_m,
                               const std::array<Node, 4>& nodes) {
   const GaussianShape here = gaussian_at(o, place, wavelength_m);

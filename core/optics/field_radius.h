@@ -36,7 +36,7 @@ inline const char* unit_text(FieldRadius unit) {
 /// and the table has angles.
 std::optional<double> field_radius(const Optics& optics, PixelPosition pixel, FieldRadius unit);
 
-/// The same of an image height; along +x for a lens that is not symmetric.
+/// Radius of an image height; along +x for a lens that is not symmetric.
 std::optional<double> field_radius_at(const Optics& optics, double height_px, FieldRadius unit);
 
 /// Image height of such a distance [px]; infinite where the lens images nothing.

@@ -59,7 +59,7 @@ class PsfModel {
   std::optional<SensorSeeing> seeing_;
   double cell_rad_;
   std::vector<PupilGrid> grids_;                  // one per wavelength
-  std::vector<std::optional<SampledOtf>> extra_;  // likewise; none: not yet asked for
+  std::vector<std::optional<SampledOtf>> extra_;  // one per wavelength; none: not yet asked for
   struct Centred {
     FieldPlace place;
     std::size_t wavelength;

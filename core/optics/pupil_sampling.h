@@ -23,7 +23,7 @@ Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_
 /// radius].
 double steepest_slope(const Pupil& pupil);
 
-/// The same without the tilt, from the chief ray.
+/// Steepest slope without the tilt, from the chief ray.
 double steepest_slope_of(const std::vector<ZernikeTerm>& terms);
 
 /// Grids of the pupil for each wavelength. Empty if the camera's kernel needs no pupil. Fine enough

@@ -15,12 +15,12 @@ namespace dmise {
 Trajectory parse_geodetic_track(std::string_view text, const std::string& source, const Tai& start,
                                 const std::string& name, const Ellipsoid& ellipsoid = wgs84);
 
-/// The same for a file, optionally gzipped.
+/// Reads a track of a file, optionally gzipped.
 Trajectory read_geodetic_track(const std::string& path, const Tai& start, const std::string& name,
                                const Ellipsoid& ellipsoid = wgs84);
 
-/// The same for a file with the header `time_s,east_m,north_m,up_m`: relative to `origin` and on
-/// its axes.
+/// Reads a track of a file with the header `time_s,east_m,north_m,up_m`: relative to `origin` and
+/// on its axes.
 Trajectory read_enu_track(const std::string& path, const Tai& start, const std::string& name,
                           const Site& origin);
 

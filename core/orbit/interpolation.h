@@ -65,7 +65,7 @@ struct HermiteWeights {
 
 /// Weights of the position at the fraction `u` of the interval, [0, 1], of `tick_s` length.
 HermiteWeights hermite_weights(HermiteOrder order, double u, double tick_s);
-/// The same on `count` knots, [2, 4], from tick `first` on.
+/// Weights on `count` knots, [2, 4], from tick `first` on.
 HermiteWeights hermite_weights(int first, int count, double u, double tick_s);
 
 /// Sum of `positions_m` and `slopes_m_per_s`, those of ticks first, first + 1, ...

@@ -65,7 +65,7 @@ inline FramedState state_at(const MotionModel& motion, const Tai& time) {
   return std::visit([&](const auto& model) { return state_at(model, time); }, motion);
 }
 
-/// The same with the derivative of the position as velocity.
+/// State with the derivative of the position as velocity.
 inline FramedState path_at(const MotionModel& motion, const Tai& time) {
   const auto* trajectory = std::get_if<Trajectory>(&motion);
   return trajectory ? path_at(*trajectory, time) : state_at(motion, time);

@@ -33,7 +33,7 @@ std::vector<OemLine> kvn_lines(std::string_view text) {
   return lines;
 }
 
-/// The same of an OEM in XML (CCSDS 505.0-B): metadata become KEY = value, states a line each.
+/// Lines of an OEM in XML (CCSDS 505.0-B): metadata become KEY = value, states a line each.
 /// Throws `ConfigError`.
 std::vector<OemLine> xml_lines(std::string_view text, const std::string& source) {
   pugi::xml_document document;

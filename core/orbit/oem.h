@@ -56,7 +56,7 @@ std::string span_text(const Trajectory& trajectory);
 /// Throws `Error` with the object and the span if `time` is outside it.
 FramedState state_at(const Trajectory& trajectory, const Tai& time);
 
-/// The same with the derivative of the interpolated position as velocity, which interpolation
+/// State with the derivative of the interpolated position as velocity, which interpolation
 /// between ticks needs. They differ if the file asks for Lagrange or linear interpolation.
 FramedState path_at(const Trajectory& trajectory, const Tai& time);
 

@@ -42,7 +42,7 @@ Band through(const Band& band, const Curve& transmission);
 
 /// Wavelengths [m] between which the band is linear, ascending; at least two.
 std::vector<double> knots(const Band& band);
-/// The same where `curve` is linear, too: with those of its samples that lie in the band.
+/// Knots where `curve` is linear, too: with those of its samples that lie in the band.
 std::vector<double> knots(const Band& band, const Curve& curve);
 
 /// Throws `Error` "band NAME: reason" unless the band is finite, positive and transmits light.

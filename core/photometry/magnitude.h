@@ -13,7 +13,7 @@ inline constexpr double sun_v_mag = -26.76;
 /// Bessell & Murphy 2012, PASP 124, 140.
 double zero_point_photons_per_s_m2(const Band& band);
 
-/// The same in the AB system: 3631 Jy at every wavelength. Source: Oke & Gunn 1983, ApJ 266, 713.
+/// Zero point in the AB system: 3631 Jy at every wavelength. Source: Oke & Gunn 1983, ApJ 266, 713.
 double ab_zero_point_photons_per_s_m2(const Band& band);
 
 /// Photons/s/m2 in `band` of sunlight of magnitude `v_mag` (Johnson V): the Moon, a grey object,

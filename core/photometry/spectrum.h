@@ -23,7 +23,7 @@ Spectrum times(Spectrum spectrum, const Factor& factor) {
 /// The Sun at 1 au above the atmosphere, 0.2-5 um. Source: ASTM E490-00a, averaged with triangular
 /// weights every 5 nm up to 1.1 um.
 const Spectrum& solar_spectrum();
-/// The same for reflected sunlight, 0.2-100 um: beyond 5 um a black body of 5050 K, the Sun's
+/// The spectrum of reflected sunlight, 0.2-100 um: beyond 5 um a black body of 5050 K, the Sun's
 /// brightness temperature at 10 um (Vernazza, Avrett & Loeser 1976, ApJS 30, 1), scaled to be
 /// continuous: up to 13 % too bright there, where thermal emission dominates.
 const Spectrum& sunlight_spectrum();
@@ -34,7 +34,7 @@ const Spectrum& vega_spectrum();
 /// c), exact for both as tabulated. Throws `Error` if the band reaches beyond the spectrum.
 double photon_rate_per_m2(const Spectrum& spectrum, const Band& band);
 
-/// The same for a black body, up to a factor common to all bands, at `temperature_k` > 0, times
+/// Photons of a black body, up to a factor common to all bands, at `temperature_k` > 0, times
 /// `factors` over wavelength (the end values hold outside). Relative error below 1e-6 for 1000 K
 /// and more.
 double black_body_photon_rate(double temperature_k, const Band& band, const Curve& factors = {});

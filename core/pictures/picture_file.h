@@ -14,7 +14,7 @@ namespace dmise {
 /// Writes PNG, TIFF or JPEG by the extension of `path`; grey or RGB by the picture's channels (1 or
 /// 3).
 void write_picture(const std::string& path, const Picture& picture);
-/// The same in memory. `format`: "png", "tiff" or "jpeg".
+/// A picture's file in memory. `format`: "png", "tiff" or "jpeg".
 std::string encode_picture(const Picture& picture, const std::string& format);
 
 /// A metadata item of an EXR file.

@@ -21,7 +21,7 @@ std::string cost_factors_text(const CostFactors& factors);
 
 /// Returns the seconds that an effect of a plan is predicted to take here.
 double predicted_s(const PlannedEffect& effect, const CostFactors& factors);
-/// The same for a frame.
+/// Predicted seconds of a frame.
 double predicted_s(const EffectPlan& plan, const CostFactors& factors);
 
 }  // namespace dmise

@@ -27,7 +27,7 @@ struct EffectPlan {
   std::vector<PlannedEffect> planned;  // those that apply, in the order in which they run
   ErrorBound budget;
   ErrorBound error;       // the sum over all effects
-  double cost_s = 0.0;    // likewise
+  double cost_s = 0.0;    // over all effects, too
   double min_cost_s = 0;  // no plan within the budget costs less
   bool in_time = true;    // false: no plan is as fast as was asked; this is the fastest
   bool replayed = false;  // its levels are those of another run

@@ -26,7 +26,7 @@ struct LightPeriod {
 struct LightCurve {
   double bin_px = 0.0;           // length of a bin
   std::vector<double> along_px;  // of the middle of a bin from end 1
-  // The same after the start of the exposure, with the delay of the row of a rolling shutter, of a
+  // Time after the start of the exposure, with the delay of the row of a rolling shutter, of a
   // motion from end 1 to end 2 (`direction_known`).
   std::vector<double> time_s;
   std::vector<double> light_e, sigma_e;  // electrons of a bin and their error

@@ -13,7 +13,7 @@ struct Observation {
   std::optional<double> ra_rad, dec_rad;  // ICRS of the stars in the frame's centre, mid exposure
   std::optional<double> airmass;          // of the frame's centre; on the ground, above the horizon
   std::optional<double> sun_altitude_rad;   // of its centre over the site, without refraction
-  std::optional<double> moon_altitude_rad;  // likewise
+  std::optional<double> moon_altitude_rad;  // as that of the Sun
 
   bool operator==(const Observation&) const = default;
 };

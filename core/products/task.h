@@ -18,7 +18,7 @@ struct Task {
   std::string sensor;
   std::uint32_t track = 0;             // id of the target
   std::uint32_t catalogue_number = 0;  // of the target; 0: in no catalogue
-  std::string name;                    // likewise; may be empty
+  std::string name;                    // of the target; may be empty
   SimTime given, start, on_target, end;
   std::uint32_t first_frame = 0, exposures = 0;  // that fit between `on_target` and `end`
   // The predicted path, at `path_start` and every `path_step_s` after, at least 2 points: all

@@ -30,7 +30,7 @@ struct Track {
   double drag_m2_per_kg = 0.0, drag_sigma_m2_per_kg = 0.0;
   double srp_m2_per_kg = 0.0, srp_sigma_m2_per_kg = 0.0;
   std::uint32_t catalogue_number = 0;   // of what it is correlated with; 0: in no catalogue
-  std::string name;                     // likewise; may be empty
+  std::string name;                     // of that object; may be empty
   double existence = 0.0;               // probability that the object exists, [0, 1]
   std::uint32_t detections = 0;         // taken since it began
   std::vector<std::string> associated;  // ids of the detections that it took at this tick

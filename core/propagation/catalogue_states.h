@@ -19,7 +19,7 @@ enum class StateAxes { teme, gcrs, itrs };
 struct CatalogueStates {
   std::size_t objects = 0, times = 0;
   std::vector<double> position_m;        // objects x times x 3
-  std::vector<double> velocity_m_per_s;  // likewise; with ITRS relative to the turning Earth
+  std::vector<double> velocity_m_per_s;  // as position_m; with ITRS relative to the turning Earth
   std::vector<std::uint8_t> code;        // objects x times
 
   std::size_t index(std::size_t object, std::size_t time) const { return object * times + time; }

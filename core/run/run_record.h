@@ -59,7 +59,7 @@ struct RunRecord {
   SimTime duration, tick;
   std::vector<RunSensor> sensors;
   std::vector<RunCatalogue> catalogues;  // in the scenario's order
-  std::vector<RunObject> own_objects;    // likewise
+  std::vector<RunObject> own_objects;    // in the scenario's order
 };
 
 /// None where the directory has no run.json. Throws `ConfigError` "FILE: KEY: reason" for one that

@@ -29,7 +29,7 @@ struct FaintStarlight {
 /// and 9: 4.0 + 7.5 exp(-|b| / 17 deg) S10 a magnitude, as counted in the Hipparcos and Tycho
 /// catalogues. Source of the sums over the sky: Leinert et al. 1998, A&AS 127, 1, section 10.
 double faint_starlight_s10(const FaintStarlight& starlight, double sin_galactic_latitude);
-/// The same in a direction (unit); by `StarCounts` where `by_counts` is set.
+/// Starlight in a direction (unit); by `StarCounts` where `by_counts` is set.
 double faint_starlight_s10(const FaintStarlight& starlight, const Vec<Galactic>& direction);
 
 }  // namespace dmise

@@ -20,10 +20,10 @@ using PixelFunction = std::function<double(double x, double y)>;
 std::size_t fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
                            float* out, Threads& threads);
 
-/// The same without a grid: `f` at every pixel's centre.
+/// Fills an image without a grid: `f` at every pixel's centre.
 void fill_every_pixel(int columns, int rows, const PixelFunction& f, float* out, Threads& threads);
 
-/// The same grid as patches, of which the pixels are evaluations, to be drawn elsewhere. Later ones
+/// The grid as patches, of which the pixels are evaluations, to be drawn elsewhere. Later ones
 /// cover earlier ones.
 std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,
                                       double tolerance, Threads& threads);

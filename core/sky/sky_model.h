@@ -22,7 +22,7 @@
 
 namespace dmise {
 
-/// The same brightness everywhere, of the Sun's colour: a sky given by one figure.
+/// One brightness everywhere, of the Sun's colour: a sky given by one figure.
 struct UniformSky {
   double v_mag_per_arcsec2 = 21.0;
 };
@@ -106,13 +106,13 @@ class SkyModel {
   /// Photons/s/m2/sr from a direction (unit) at the camera; below the horizon that of the horizon.
   double photons_per_s_m2_sr(const Vec<Enu>& direction) const;
 
-  /// The same of each part, in the order of `SkyPart`.
+  /// Photons of each part, in the order of `SkyPart`.
   std::array<double, sky_part_count> photons_of_parts(const Vec<Enu>& direction) const;
 
   /// V brightness of one part [S10]; 0 where it is off, and of the thermal sky, which has no light
   /// in V. Extinction is that of the band. Daylight: sunlight of as much light in the band.
   double part_s10(SkyPart part, const Vec<Enu>& direction) const;
-  /// The same of each part [S10], in the order of `SkyPart`.
+  /// Brightness of each part [S10], in the order of `SkyPart`.
   std::array<double, sky_part_count> parts_s10(const Vec<Enu>& direction) const;
 
  private:

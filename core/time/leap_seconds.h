@@ -13,7 +13,7 @@ struct UtcInstant {
   bool operator==(const UtcInstant&) const = default;
 };
 
-/// The same instant on the uniform scale.
+/// An instant on the uniform scale.
 struct TaiInstant {
   std::int64_t mjd = 0;
   std::int64_t ns_of_day = 0;  // [0, 86400e9)

@@ -25,7 +25,7 @@ struct StateTransition {
   OrbitMatrix transition = OrbitMatrix::Identity();  // d state(to) / d state(from)
 };
 
-/// The same with the state transition matrix: derivatives of the integrated path itself, exact to
+/// Propagates with the state transition matrix: derivatives of the integrated path itself, exact to
 /// rounding.
 Outcome<StateTransition> propagate_with_transition(const ForceModel& forces,
                                                    const OrbitState& state, SimTime to,

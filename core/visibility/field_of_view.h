@@ -27,7 +27,7 @@ class FieldOfView {
   bool everything_ = false;                   // the cone is the whole sphere
 };
 
-/// The same for a cone around `axis` (unit): distance to it, <= 0 inside.
+/// Distance from a cone around `axis` (unit), <= 0 inside.
 template <class F>
 double outside_cone_m(const Vec<F>& from_apex_m, const Vec<F>& axis, double cos_half,
                       double sin_half) {

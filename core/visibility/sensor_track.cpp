@@ -18,8 +18,9 @@ constexpr double min_distance_m = 1.0;
 
 }  // namespace
 
-SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
-                         std::optional<std::size_t> platform, std::optional<std::size_t> target)
+SensorTrack::SensorTrack(const SensorConfig& sensor, const EphemerisTable& sky,
+                         const Sgp4Batch& batch, std::optional<std::size_t> platform,
+                         std::optional<std::size_t> target)
     : sensor_(sensor), sky_(sky), batch_(batch), platform_(platform), target_(target) {
   const auto* towards = std::get_if<PointTarget>(&sensor.pointing);
   geometric_ = towards && towards->geometric;

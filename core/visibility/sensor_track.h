@@ -6,8 +6,8 @@
 #include "core/orbit/sgp4/sgp4_batch.h"
 #include "core/sky/air/refraction.h"
 #include "core/sky/bodies/occultation.h"
+#include "core/visibility/ephemeris_table.h"
 #include "core/visibility/pointing.h"
-#include "core/visibility/sky_hours.h"
 
 namespace dmise {
 
@@ -34,11 +34,11 @@ class SensorTrack {
  public:
   /// `platform` and `target` are objects of `batch`, if the sensor has them. The arguments must
   /// outlive the track.
-  SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
+  SensorTrack(const SensorConfig& sensor, const EphemerisTable& sky, const Sgp4Batch& batch,
               std::optional<std::size_t> platform, std::optional<std::size_t> target);
 
   const SensorConfig& sensor() const { return sensor_; }
-  const SkyHours& sky() const { return sky_; }
+  const EphemerisTable& sky() const { return sky_; }
   const std::optional<Site>& site() const { return site_; }
   /// The object that carries the sensor, which does not see itself.
   std::optional<std::size_t> platform() const { return platform_; }
@@ -57,7 +57,7 @@ class SensorTrack {
                                         const Rotation<Gcrs, Teme>& gcrs_from_teme) const;
 
   const SensorConfig& sensor_;
-  const SkyHours& sky_;
+  const EphemerisTable& sky_;
   const Sgp4Batch& batch_;
   std::optional<std::size_t> platform_, target_;
   std::optional<Site> site_;

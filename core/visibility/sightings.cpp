@@ -284,7 +284,7 @@ class Search {
   std::vector<double> reach_;  // bounds on the objects' speeds in the axes of the bounds [m/s]
   std::vector<OrbitBound> bound_before_;
   std::vector<CameraMoment> cameras_;  // of the part, from step `first_instant_`
-  std::vector<Sunlight> lights_;       // the same
+  std::vector<Sunlight> lights_;       // at those instants
   std::size_t first_instant_ = 0;
   std::vector<CameraMotion> motions_;  // of the part, between its instants
   CameraMotion motion_;                // maximum of the stride

@@ -140,7 +140,7 @@ std::optional<PixelPosition> on_plane(const Wcs& w, const Vec<Gcrs>& direction) 
   return wcs_focal_place(plain, direction);
 }
 
-/// The same for directions that take part in a fit; else empty.
+/// Place of directions that take part in a fit; else empty.
 std::optional<PixelPosition> fitted_place(const Wcs& w, const Vec<Gcrs>& direction) {
   if (dot(from_spherical<Gcrs>(w.ra_rad, w.dec_rad), direction) < farthest_fitted_cos)
     return std::nullopt;

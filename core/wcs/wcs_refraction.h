@@ -18,7 +18,7 @@ class RefractionShift {
   /// Shift of a pixel; 0 where no direction is imaged. Below the horizon the refraction at the
   /// horizon.
   PixelPosition at(PixelPosition pixel) const { return shift(pixel, false); }
-  /// The same with refraction extended smoothly below the horizon, for nodes of a table.
+  /// Shift with refraction extended smoothly below the horizon, for nodes of a table.
   PixelPosition smooth_at(PixelPosition pixel) const { return shift(pixel, true); }
   /// Apparent elevation [rad]; -pi/2 where no direction is imaged.
   double elevation_rad(PixelPosition pixel) const;

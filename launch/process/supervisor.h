@@ -62,7 +62,7 @@ std::string program_directory();
 
 /// Replaces this process by the program `command[0]`. Throws `Error` if it cannot be started.
 [[noreturn]] void become(std::vector<std::string> command);
-/// The same with a program of `program_directory`.
+/// Becomes a program of `program_directory`.
 [[noreturn]] void become_program(const std::string& name, std::vector<std::string> arguments);
 
 }  // namespace dmise

@@ -21,7 +21,7 @@ class Progress {
   void show(const ProgressState& state, bool last = false);
   /// Whether `show` would print now.
   bool is_due() const;
-  /// The same for other work, with the fraction `share` in [0, 1] done.
+  /// Shows other work, with the fraction `share` in [0, 1] done.
   void show_share(double share, const std::string& what);
   /// Clears the bar, so that other text can follow.
   void clear_line();

@@ -140,8 +140,9 @@ void write_products(const std::string& directory, const PassList& list, const st
 }
 
 void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
-                 const ObjectPopulation& population, const Sgp4Batch& batch, const SkyHours& sky,
-                 const TimeGrid& grid, Threads& threads, bool first, bool tells_excluded) {
+                 const ObjectPopulation& population, const Sgp4Batch& batch,
+                 const EphemerisTable& sky, const TimeGrid& grid, Threads& threads, bool first,
+                 bool tells_excluded) {
   std::optional<std::size_t> platform, target;
   if (const auto* p = std::get_if<PlatformConfig>(&sensor.place))
     platform = followed(population, p->object, sensor.name + ": platform");
@@ -209,7 +210,7 @@ void visible(const VisibleOptions& options) {
                  population.roster.objects.size());
   Threads threads(options.threads);
   const Sgp4Batch batch(population.elements, &threads);
-  const SkyHours sky(clock, grid.from, grid.last(), scenario.earth.ellipsoid);
+  const EphemerisTable sky(clock, grid.from, grid.last(), scenario.earth.ellipsoid);
   std::unique_ptr<RunLock> lock;
   if (!options.print_only) lock = lock_directory(options.out);
   const bool tells_excluded = std::ranges::any_of(

@@ -23,7 +23,7 @@ std::string pass_table(const PassList& list, int rows, bool has_csv);
 /// (no azimuth in orbit, no sunlit part).
 std::string pass_csv(const PassList& list, bool with_header = true);
 
-/// The same as one JSON object per pass, null for missing values.
+/// A list as one JSON object per pass, null for missing values.
 std::string pass_jsonl(const PassList& list);
 
 /// "LEO", "MEO", "GEO", "HEO" or "far".

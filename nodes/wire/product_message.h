@@ -3,6 +3,7 @@
 #include <google/protobuf/message.h>
 #include <google/protobuf/reflection.h>
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstdint>
@@ -13,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/frames/quaternion.h"
+#include "core/frames/vec.h"
 #include "core/products/detection.h"
 #include "core/products/frame_report.h"
 #include "core/products/task.h"
@@ -106,15 +108,33 @@ class MessageWriter {
     for (const std::string& text : texts)
       reflection_.AddString(&message_, &field_of(message_, name), text);
   }
-  void put(const char* name, const Wcs& wcs) { put_message(name, wcs); }
+  template <class To, class From>
+  void put(const char* name, const Rotation<To, From>& r) {
+    for (const auto& row : r.m) put_list(name, row);
+  }
+  template <HasFields T>
+  void put(const char* name, const T& part) {
+    MessageWriter writer(*reflection_.MutableMessage(&message_, &field_of(message_, name)));
+    visit_fields(writer, part);
+  }
   template <HasFields T>
   void put(const char* name, const std::optional<T>& part) {
-    if (part) put_message(name, *part);
+    if (part) put(name, *part);
   }
-  template <class T>
-  void put_message(const char* name, const T& value) {
-    MessageWriter writer(*reflection_.MutableMessage(&message_, &field_of(message_, name)));
-    visit_fields(writer, value);
+  template <HasFields T>
+  void put(const char* name, const std::vector<T>& parts) {
+    put_parts(name, parts);
+  }
+  template <HasFields T, std::size_t N>
+  void put(const char* name, const std::optional<std::array<T, N>>& parts) {
+    if (parts) put_parts(name, *parts);
+  }
+  template <class Parts>
+  void put_parts(const char* name, const Parts& parts) {
+    for (const auto& part : parts) {
+      MessageWriter writer(*reflection_.AddMessage(&message_, &field_of(message_, name)));
+      visit_fields(writer, part);
+    }
   }
   template <class Numbers>
   void put_list(const char* name, const Numbers& numbers) {
@@ -215,17 +235,39 @@ class MessageReader {
         reflection_.GetRepeatedFieldRef<std::string>(message_, &field_of(message_, name));
     texts.assign(all.begin(), all.end());
   }
-  void take(const char* name, Wcs& wcs) const { take_message(name, wcs); }
-  template <HasFields T>
-  void take(const char* name, std::optional<T>& part) const {
-    if (reflection_.HasField(message_, &field_of(message_, name)))
-      take_message(name, part.emplace());
+  template <class To, class From>
+  void take(const char* name, Rotation<To, From>& r) const {
+    const auto values = dmise::take<9>(list(name), (path_ + name).c_str());
+    for (std::size_t i = 0; i < 9; ++i) r.m[i / 3][i % 3] = values[i];
   }
-  template <class T>
-  void take_message(const char* name, T& value) const {
+  template <HasFields T>
+  void take(const char* name, T& part) const {
     MessageReader reader(reflection_.GetMessage(message_, &field_of(message_, name)),
                          path_ + name + ".");
-    visit_fields(reader, value);
+    visit_fields(reader, part);
+  }
+  template <HasFields T>
+  void take(const char* name, std::optional<T>& part) const {
+    if (reflection_.HasField(message_, &field_of(message_, name))) take(name, part.emplace());
+  }
+  template <HasFields T>
+  void take(const char* name, std::vector<T>& parts) const {
+    const auto& field = field_of(message_, name);
+    parts.resize(std::size_t(reflection_.FieldSize(message_, &field)));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      MessageReader reader(reflection_.GetRepeatedMessage(message_, &field, int(i)), path_);
+      visit_fields(reader, parts[i]);
+    }
+  }
+  template <HasFields T, std::size_t N>
+  void take(const char* name, std::optional<std::array<T, N>>& parts) const {
+    std::vector<T> all;
+    take(name, all);
+    if (all.empty()) return;
+    if (all.size() != N)
+      throw Refused(Refusal::payload, path_ + name + ": must be " + std::to_string(N) + ", got " +
+                                          std::to_string(all.size()));
+    std::ranges::copy(all, parts.emplace().begin());
   }
   google::protobuf::RepeatedFieldRef<double> list(const char* name) const {
     return reflection_.GetRepeatedFieldRef<double>(message_, &field_of(message_, name));

@@ -33,10 +33,10 @@ std::vector<bool> found_in(const FrameProducts& frame) {
 }
 
 /// Objects of one frame by catalogue number and name.
-std::vector<CheckedObject> joined(const SurveyScene& scene, const ExposureLooks& expected,
+std::vector<CheckedObject> joined(const SurveyScene& scene, const ExposureForecast& expected,
                                   const FrameProducts& frame) {
   std::map<std::pair<std::uint32_t, std::string>, CheckedObject> by_name;
-  for (const Look& look : expected.looks) {
+  for (const ExpectedDetection& look : expected.looks) {
     const ObjectInfo& info = scene.roster()->objects[look.object];
     by_name[{info.catalogue_number, info.name}].look = look;
   }
@@ -103,7 +103,7 @@ RenderedCheck check_rendered(const SurveyScene& scene, std::size_t count, FrameH
     std::vector<std::uint32_t> frames;
     for (std::size_t k = 0; k < wanted; ++k)
       frames.push_back(all[std::size_t((double(k) + 0.5) * double(all.size()) / double(wanted))]);
-    const SensorLooks looks(scene, *sensor);
+    const SensorForecast looks(scene, *sensor);
     const auto objects = objects_by_frame(scene, *sensor, frames, threads);
     const WorldSource worlds(scenario, *sensor, scene.clock());
     FramePipeline pipeline(sensor_settings(scenario, sensor->name, ""), scene.stars(), threads);

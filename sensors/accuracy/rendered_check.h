@@ -12,9 +12,9 @@ namespace dmise {
 struct CheckedObject {
   std::string sensor;
   std::uint32_t frame = 0, catalogue_number = 0;
-  Look look;              // of the survey; zeros: it expects no light
-  double signal_e = 0.0;  // of its light in the frame; 0: none
-  bool found = false;     // by the frame's detections
+  ExpectedDetection look;  // of the survey; zeros: it expects no light
+  double signal_e = 0.0;   // of its light in the frame; 0: none
+  bool found = false;      // by the frame's detections
 };
 
 struct RenderedCheck {

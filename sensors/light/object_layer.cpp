@@ -220,7 +220,7 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
   return truths;
 }
 
-/// The same with a rolling shutter, which exposes each object in its own time.
+/// Paints with a rolling shutter, which exposes each object in its own time.
 std::vector<Truth> paint_rolled(const View& view, const std::vector<std::size_t>& objects,
                                 const ObjectShapes* shapes, OpticsStage& stage, OcclusionMask& mask,
                                 ExpectedElectronImage& image) {

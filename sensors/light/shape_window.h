@@ -10,7 +10,7 @@ struct TileAxes {};
 struct ShapeWindow {
   Rotation<CameraFrame, TileAxes> camera_from_tile;
   Rotation<CameraFrame, Body> tile_from_body;  // the tile's axes as those of its own camera
-  Vec<CameraFrame> object_m;                   // likewise
+  Vec<CameraFrame> object_m;                   // in those axes
   TileCamera camera;                           // no columns where the frame sees nothing of it
   double pixel_side_px = 1.0;                  // of the tile's pixel, in the camera's
 };

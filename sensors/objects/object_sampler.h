@@ -49,7 +49,7 @@ class ObjectSampler {
 
   /// Returns V above the atmosphere when fully lit by the Sun, which alone lights it.
   double magnitude(std::size_t object, const Motion& motion, const ExposureInstant& at) const;
-  /// The same with the light of Earth and Moon, where the effects are on: V of all light drawn.
+  /// Magnitude with the light of Earth and Moon, where the effects are on: V of all light drawn.
   double magnitude_of_all_light(std::size_t object, const Motion& motion,
                                 const ExposureInstant& at) const;
 

@@ -64,7 +64,7 @@ class ObjectShapes {
   bool have_glints() const;
   /// Null for an object without a shape.
   const ObjectShape* of(const ObjectInfo& object) const;
-  /// The same of an object of the scenario's own.
+  /// Shape of an object of the scenario's own.
   const ObjectShape* of(std::uint32_t catalogue_number) const;
   const ObjectModels& models() const { return models_; }
 
@@ -97,7 +97,7 @@ std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTim
 /// reaches the object, secondary light, and what it emits.
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                               const ShapePose& pose, double sunlit);
-/// The same of the facets alone, as pictures show them: without glints.
+/// Light of the facets alone, as pictures show them: without glints.
 double facet_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                               const ShapePose& pose, double sunlit);
 

@@ -13,7 +13,7 @@ struct ThermalLimit {
   double background_e_per_s = 0.0;     // of a pixel, with dark current
   double fills_in_s = 0.0;             // a pixel, by the background alone
   double nefd_photons_per_s_m2 = 0.0;  // in the band
-  double nefd_w_per_m2 = 0.0;          // the same at the band's centre
+  double nefd_w_per_m2 = 0.0;          // flux at the band's centre
   double nefd_jy = 0.0;                // of a source with as much at every frequency
   double nefd_ab_mag = 0.0;
 };

@@ -29,7 +29,7 @@ struct SeenBody {
 };
 SeenBody seen_sun(const View& view, SimTime t);
 SeenBody seen_moon(const View& view, SimTime t);
-/// The same with all effects of place that the scenario asks for, whatever was planned.
+/// Sun and Moon with all effects of place that the scenario asks for, whatever was planned.
 SeenBody truly_seen_sun(const View& view, SimTime t);
 SeenBody truly_seen_moon(const View& view, SimTime t);
 

@@ -22,7 +22,7 @@ class Throughput {
 
   /// Factor of the air on a source's light; in space of that over the Earth's limb.
   double of_air(const SightLine& line) const;
-  /// The same of many; the seconds of each effect are added to `times`.
+  /// Factors of many lines; the seconds of each effect are added to `times`.
   std::vector<double> of_air(std::span<const SightLine> lines, EffectTimes& times) const;
   /// Share of the sky's light from an apparent direction (unit) that air over the Earth's limb
   /// leaves, [0, 1]; 1 on the ground.

@@ -35,7 +35,7 @@ class View {
   const SensorConfig& sensor() const { return sensor_; }
   /// When the shutter is open: of a rolling one in its first row.
   const FrameTimes& times() const { return times_; }
-  /// The same view while a source is exposed.
+  /// This view while a source is exposed.
   View during(const FrameTimes& times) const;
   /// Whether rows are exposed one after another.
   bool rolls() const { return shutter_.row_time_us > 0.0; }
@@ -74,7 +74,7 @@ class View {
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
   ApparentPlaces places(SimTime t, const EffectSet& effects) const;
-  /// The same with all that the scenario asks for, whatever was planned: for truth.
+  /// Places with all that the scenario asks for, whatever was planned: for truth.
   ApparentPlaces true_places(SimTime t) const {
     return places(t, sensor_.unplanned ? *sensor_.unplanned : sensor_.effects);
   }
@@ -117,7 +117,7 @@ class View {
   const World& world_;
   std::uint64_t seed_;
   EnvironmentState environment_;  // of mid exposure
-  const SiteState* air_;          // likewise
+  const SiteState* air_;          // of mid exposure
   std::optional<Site> site_;
   Vec<Itrs> site_m_;
   std::optional<std::size_t> platform_, target_;

@@ -56,7 +56,7 @@ struct StarExposure {
 
   /// Trails of those that the projection can image throughout the exposure.
   std::vector<StarTrail> trails(std::span<const std::uint32_t> which) const;
-  /// The same by the grid, without those that don't come near the frame. `direction`: of all stars.
+  /// Trails by the grid, without those that don't come near the frame. `direction`: of all stars.
   std::vector<StarTrail> trails_by_grid(std::span<const std::uint32_t> which,
                                         const Column<Vec<Gcrs>>& direction) const;
   /// Paths of what stands at astrometric places, by the grid where there is one, and whether each

@@ -8,7 +8,7 @@ namespace dmise {
 /// band over the solid angle that the pixel sees through the pupil. 0 where it doesn't act.
 PixelFunction thermal_optics_electrons(const View& view);
 
-/// The same of the pixel on the optical axis.
+/// Electrons of the pixel on the optical axis.
 double thermal_optics_e(const View& view);
 
 }  // namespace dmise

@@ -34,11 +34,11 @@ class Collector {
   Collector(SensorSurvey& survey, const Shells& shells)
       : survey_(survey), shells_(shells), open_(shells.of_object.size(), none) {}
 
-  void take(SurveyExposure exposure, const ExposureLooks& seen) {
+  void take(SurveyExposure exposure, const ExposureForecast& seen) {
     exposure.in_field = seen.in_field;
     exposure.sunlit = seen.sunlit;
     survey_.closed += seen.closed;
-    for (const Look& look : seen.looks) {
+    for (const ExpectedDetection& look : seen.looks) {
       exposure.expected += look.probability;
       take(look, exposure.middle);
     }
@@ -53,7 +53,7 @@ class Collector {
  private:
   static constexpr std::uint32_t none = std::uint32_t(-1);
 
-  void take(const Look& look, SimTime t) {
+  void take(const ExpectedDetection& look, SimTime t) {
     auto& passes = survey_.passes;
     std::uint32_t& open = open_[look.object];
     if (open == none || (t - passes[open].last).seconds() > pass_gap_s ||
@@ -146,7 +146,7 @@ SensorSurvey survey_sensor(const SurveyScene& scene, const SensorConfig& sensor,
                            const Shells& shells, Threads& threads, const SurveyOptions& options) {
   SensorSurvey survey{.sensor = sensor.name,
                       .frames = frames_within(sensor, scene.scenario().duration)};
-  const SensorLooks looks(scene, sensor);
+  const SensorForecast looks(scene, sensor);
   std::vector<SurveyExposure> exposures;
   std::vector<std::uint32_t> frames;
   for (std::uint32_t frame = 1; frame <= survey.frames; ++frame) {
@@ -158,7 +158,7 @@ SensorSurvey survey_sensor(const SurveyScene& scene, const SensorConfig& sensor,
   }
   const auto objects = objects_by_frame(scene, sensor, frames, threads);
   Collector collector(survey, shells);
-  std::vector<std::optional<ExposureLooks>> seen;
+  std::vector<std::optional<ExposureForecast>> seen;
   for (std::size_t first = 0; first < frames.size(); first += block) {
     const std::size_t end = std::min(frames.size(), first + block);
     seen.assign(end - first, std::nullopt);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "sensors/survey/exposure_looks.h"
+#include "sensors/survey/exposure_forecast.h"
 #include "sensors/survey/shells.h"
 
 namespace dmise {
@@ -37,7 +37,7 @@ struct SurveyExposure {
   std::uint32_t frame = 0;
   SimTime middle;
   std::optional<double> sun_elevation_rad;  // at the site, without refraction; none in orbit
-  std::uint32_t in_field = 0, sunlit = 0;   // as in `ExposureLooks`
+  std::uint32_t in_field = 0, sunlit = 0;   // as in `ExposureForecast`
   double expected = 0.0;                    // number of detections
 
   bool operator==(const SurveyExposure&) const = default;
@@ -78,7 +78,7 @@ bool is_surveyed(const SurveyScene& scene, const SensorConfig& sensor, std::uint
                  const SurveyOptions& options);
 
 /// Surveys all exposures of a sensor that end within the run. Equal for any number of threads.
-/// Throws what `SensorLooks` throws.
+/// Throws what `SensorForecast` throws.
 SensorSurvey survey_sensor(const SurveyScene& scene, const SensorConfig& sensor,
                            const Shells& shells, Threads& threads,
                            const SurveyOptions& options = {});

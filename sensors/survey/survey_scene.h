@@ -7,7 +7,7 @@
 #include "core/sim/state.h"
 #include "core/sky/stars/star_cache.h"
 #include "core/time/clock.h"
-#include "core/visibility/sky_hours.h"
+#include "core/visibility/ephemeris_table.h"
 #include "sensors/survey/detection_model.h"
 
 namespace dmise {
@@ -25,7 +25,7 @@ class SurveyScene {
   const ObjectPopulation& population() const { return source_.population(); }
   const StateSource& source() const { return source_; }
   const Clock& clock() const { return source_.clock(); }
-  const SkyHours& hours() const { return hours_; }
+  const EphemerisTable& hours() const { return hours_; }
   const DetectionModel& model() const { return model_; }
   const std::shared_ptr<const ObjectRoster>& roster() const { return roster_; }
   const std::shared_ptr<const StarMap>& stars() const { return stars_; }
@@ -36,7 +36,7 @@ class SurveyScene {
  private:
   const Scenario& scenario_;
   StateSource source_;
-  SkyHours hours_;
+  EphemerisTable hours_;
   std::shared_ptr<const ObjectRoster> roster_;
   std::shared_ptr<const StarMap> stars_;
   DetectionModel model_;

@@ -53,7 +53,7 @@ inline Rotation<CameraFrame, Gcrs> pointing(double ra_deg, double dec_deg, doubl
 
 struct SeenPlate {
   PlateModel truth;
-  PlateBelief belief;
+  PlateHint belief;
   std::vector<PlateSource> sources;
 };
 

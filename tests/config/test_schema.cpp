@@ -140,14 +140,15 @@ TEST(Schema, ADefaultIsWhatHoldsWithoutTheKey) {
   std::vector<GivenKey> given;
   collect(all, form::map(file_kinds()[0].section), {}, given);
   std::set<const Key*> compared;
-  for (const auto& [map, key] : given) {
+  for (const GivenKey& one : given) {
+    const Key* key = one.key;
     if (compared.contains(key) || std::ranges::none_of(key->forms, [&](const Form& form) {
           return form.kind != Form::Kind::text && accepts(form, key->otherwise);
         }))
       continue;
     const YAML::Node with = YAML::Clone(all), without = YAML::Clone(all);
-    at(with, map)[key->name] = key->otherwise;
-    at(without, map).remove(key->name);
+    at(with, one.map)[key->name] = key->otherwise;
+    at(without, one.map).remove(key->name);
     const std::string stated = physics_of(with, path), absent = physics_of(without, path);
     if (stated.empty() || absent.empty()) continue;
     compared.insert(key);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Holds documents and code to docs/glossary.md: its words are in order, each once, each is said in what its row points at and
-in another document, and nobody says what a row has under `not`.
+in another document, and nobody says what a row has under `not`. No comment of the program begins with "the same" or "likewise": it names its subject.
 
     glossary.py        exits 1 and names what is wrong
 """
@@ -64,8 +64,19 @@ def faults():
                     yield f"{name}:{text[:found.start()].count(chr(10)) + 1}: says {wrong!r} for {word!r} (docs/glossary.md)"
 
 
+def faults_of_comments():
+    """Comments without a subject."""
+    begins = re.compile(r"//+ (?:The same|Likewise)\b|\S\s+// (?:the same|likewise)\b")
+    for folder in CODE:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".h", ".cpp"):
+                for number, line in enumerate(path.read_text().splitlines(), 1):
+                    if begins.search(line):
+                        yield f"{path.relative_to(ROOT)}:{number}: the comment has no subject"
+
+
 def main():
-    wrong = list(faults())
+    wrong = [*faults(), *faults_of_comments()]
     print("\n".join(wrong) or "ok: documents and code keep to the glossary")
     return 1 if wrong else 0
 

@@ -58,7 +58,7 @@ TEST(SensorSurvey, CoverageOfOneSiteIsThatOfVisible) {
   const SensorSurvey survey = network.survey();
   ASSERT_FALSE(survey.exposures.empty());
   const SimTime from = survey.exposures.front().middle, to = survey.exposures.back().middle;
-  const SkyHours sky(network.scene->clock(), {0}, network.scenario.duration);
+  const EphemerisTable sky(network.scene->clock(), {0}, network.scenario.duration);
   const auto& batch = network.scene->source().elements();
   const SensorTrack track(network.scenario.sensors[0], sky, batch, std::nullopt, std::nullopt);
   const auto passes = passes_of(

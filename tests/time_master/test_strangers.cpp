@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "nodes/runtime/process/line_limit.h"
-#include "time-master/stranger_queue.h"
+#include "time-master/unauthenticated_peers.h"
 
 namespace dmise {
 namespace {
@@ -16,22 +16,22 @@ using testing::Pair;
 
 constexpr Instant at_start = seconds(100);
 
-std::string take_all(StrangerQueue<char>& queue, Instant now) {
+std::string take_all(UnauthenticatedPeers<char>& queue, Instant now) {
   std::string taken;
   while (const auto message = queue.take(now)) taken += *message;
   return taken;
 }
 
-TEST(StrangerQueue, ServesPeersInTurns) {
-  StrangerQueue<char> queue({});
+TEST(UnauthenticatedPeers, ServesPeersInTurns) {
+  UnauthenticatedPeers<char> queue({});
   for (const char message : {'a', 'a', 'a', 'b', 'c', 'c'})
     queue.push(std::string(1, message), message, 1);
   EXPECT_EQ(take_all(queue, at_start), "abcaca");
   EXPECT_EQ(queue.size(), 0u);
 }
 
-TEST(StrangerQueue, KeepsOfAPeerWhatItsBoundAllows) {
-  StrangerQueue<char> queue({.messages_of_a_peer = 3});
+TEST(UnauthenticatedPeers, KeepsOfAPeerWhatItsBoundAllows) {
+  UnauthenticatedPeers<char> queue({.messages_of_a_peer = 3});
   for (int i = 0; i < 400'000; ++i) queue.push("flood", 'f', 2);
   EXPECT_TRUE(queue.push("honest", 'h', 2));
   EXPECT_EQ(queue.take_ignored(), 399'997u);
@@ -39,11 +39,11 @@ TEST(StrangerQueue, KeepsOfAPeerWhatItsBoundAllows) {
   EXPECT_EQ(take_all(queue, at_start), "fhff");
 }
 
-TEST(StrangerQueue, KeepsOfAllPeersWhatItsBoundsAllow) {
-  StrangerQueue<char> few({.messages = 5});
+TEST(UnauthenticatedPeers, KeepsOfAllPeersWhatItsBoundsAllow) {
+  UnauthenticatedPeers<char> few({.messages = 5});
   for (int i = 0; i < 100; ++i) few.push(std::to_string(i), 'x', 1);
   EXPECT_EQ(few.size(), 5u);
-  StrangerQueue<char> small({.bytes = 1000});
+  UnauthenticatedPeers<char> small({.bytes = 1000});
   for (int i = 0; i < 100; ++i) small.push(std::to_string(i), 'x', 300);
   EXPECT_EQ(small.size(), 3u);
   EXPECT_EQ(take_all(small, at_start).size(), 3u);
@@ -51,8 +51,8 @@ TEST(StrangerQueue, KeepsOfAllPeersWhatItsBoundsAllow) {
 }
 
 // 20 at once, then one each 10 ms, whatever is sent.
-TEST(StrangerQueue, ServesEachPeerAtABoundedRate) {
-  StrangerQueue<char> queue(
+TEST(UnauthenticatedPeers, ServesEachPeerAtABoundedRate) {
+  UnauthenticatedPeers<char> queue(
       {.messages_of_a_peer = 1000, .rate = {.burst = 20, .interval = milliseconds(10)}});
   for (int i = 0; i < 1000; ++i) queue.push("flood", 'f', 1);
   EXPECT_EQ(take_all(queue, at_start).size(), 20u);
@@ -68,8 +68,8 @@ TEST(StrangerQueue, ServesEachPeerAtABoundedRate) {
   EXPECT_NEAR(double(served), 199.0, 1.0);
 }
 
-TEST(StrangerQueue, HasNothingDueWhenNobodyWaits) {
-  StrangerQueue<char> queue({});
+TEST(UnauthenticatedPeers, HasNothingDueWhenNobodyWaits) {
+  UnauthenticatedPeers<char> queue({});
   EXPECT_EQ(queue.next_due(at_start), std::nullopt);
   EXPECT_EQ(queue.take(at_start), std::nullopt);
 }

@@ -43,7 +43,7 @@ inline SensorConfig at_atlanta(const Optics& optics, double mask_deg = 0.0) {
 struct Watch {
   SensorConfig sensor;
   TimeGrid grid;
-  SkyHours sky;
+  EphemerisTable sky;
   Sgp4Batch batch;
   SensorTrack track;
   Threads threads;

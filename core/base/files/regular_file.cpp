@@ -27,7 +27,7 @@ const char* why_not_regular(const struct stat& info, const struct statfs& system
   return nullptr;
 }
 
-/// The same of an open file.
+/// Why an open file is not regular.
 const char* why_not_regular(int file) {
   struct stat info {};
   struct statfs system {};

@@ -43,7 +43,8 @@ constexpr double uniform_of(std::uint32_t word) { return (double(word) + 0.5) * 
 
 /// Standard normal deviate of a word: the quantile function at `uniform_of(word)`, in single
 /// precision with an error below 1.2e-6 (relative to 1 + |z|); |z| <= 6.34. Odd about the median.
-/// The same bytes on every processor: additions, multiplications, divisions and square roots only.
+/// Gives the same bytes on every processor: additions, multiplications, divisions and square roots
+/// only.
 float normal_of(std::uint32_t word);
 void normals_of(const std::uint32_t* words, std::size_t count, float* out,
                 SimdLevel level = best_simd_level());

@@ -18,7 +18,7 @@ struct BiasMeasurement {
   double floor_variance = 0;        // of a pixel in a frame, with rounding, without columns [DN2]
   MeasuredValue read_noise_spread;  // deviation of the logarithm of the pixels' rms
   MeasuredValue column_noise;       // new in each frame
-  MeasuredValue pixel_offset, column_offset;  // the same in each frame
+  MeasuredValue pixel_offset, column_offset;  // patterns that stay in each frame
   double drift_dn = 0.0;  // rms of the level from frame to frame, where it is significant
   bool clipped = false;   // the counts of many pixels are 0
 };

@@ -25,7 +25,7 @@ struct DetectorCalibration {
 
 DetectorCalibration calibrate_detector(const CalibrationSet& set, Threads& threads);
 
-/// The same as quantities of a camera file, in electrons.
+/// Adds them to a camera file, in electrons.
 void add_detector(const CalibrationSet& set, const DetectorCalibration& detector,
                   std::optional<double> quantum_efficiency, CameraCalibration& camera);
 

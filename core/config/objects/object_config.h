@@ -30,7 +30,7 @@ struct ObjectSource {
   std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
   std::string where;                    // `file:line:column: objects[0].catalogue`, for messages
-  std::vector<std::string> only_where;  // likewise of each name
+  std::vector<std::string> only_where;  // `file:line:column: key` of each name
   ObjectModels models;                  // of the objects of all catalogues of the scenario
 };
 

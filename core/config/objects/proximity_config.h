@@ -14,7 +14,7 @@ struct ProximityConfig {
   std::string chief;  // name or number of an object of the scenario
   ProximityMotion motion;
   std::string where;        // `file:line:column: objects[0].motion.proximity`, for messages
-  std::string chief_where;  // the same of `of`
+  std::string chief_where;  // place of `of`
 };
 
 /// Reads `proximity`. Throws `ConfigError` `file:line:column: key: reason`.

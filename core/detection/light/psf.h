@@ -33,7 +33,7 @@ inline constexpr double pixel_variance_px2 = 1.0 / 12;
 
 /// Standard deviation of a Gaussian of `sigma_px` and pixels together.
 double with_pixel(double sigma_px);
-/// The same of a Gaussian of `fwhm_px`.
+/// Sigma of a Gaussian of `fwhm_px`.
 double sigma_with_pixel(double fwhm_px);
 /// FWHM [px] of a Gaussian before pixels widened it to `sigma_px`; 0 if it is no wider than they.
 double fwhm_before_pixel(double sigma_px);
@@ -44,7 +44,7 @@ struct PsfField {
   static constexpr std::size_t terms = 6;  // 1, u, v, u^2, u v, v^2
   using Polynomial = std::array<double, terms>;
 
-  /// The same Gaussian everywhere, of a FWHM before pixel integration.
+  /// One Gaussian everywhere, of a FWHM before pixel integration.
   static PsfField gaussian(double fwhm_px);
 
   /// Gaussian nearest to the PSF at a pixel, with the pixel.

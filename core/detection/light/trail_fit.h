@@ -19,7 +19,7 @@ struct FitPixel {
 std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const Trail> trails,
                              const Psf& psf);
 
-/// The same of one trail, with the derivatives by its place.
+/// Light of one trail, with the derivatives by its place.
 struct PlacedLight {
   double value = 0.0, by_x = 0.0, by_y = 0.0;
 };

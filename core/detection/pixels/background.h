@@ -25,7 +25,7 @@ class Background {
 
   float level_dn(int x, int y) const { return level_.at(x, y); }
   float sigma_dn(int x, int y) const { return sigma_.at(x, y); }
-  /// The same along row `y`, of the columns from `begin` to before `end`.
+  /// Levels along row `y`, of the columns from `begin` to before `end`.
   void level_row(int y, int begin, int end, float* level_dn) const {
     level_.row(y, begin, end, level_dn);
   }
@@ -54,7 +54,7 @@ class Background {
 
   int columns_, rows_;  // of the frame
   CellMesh cells_;      // levels of the cells
-  CellMesh level_;      // the same, or finer where they bend
+  CellMesh level_;      // on that mesh, or finer where they bend
   CellMesh sigma_;
 };
 

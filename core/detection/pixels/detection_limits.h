@@ -4,10 +4,11 @@
 namespace dmise::detection_limits {
 
 inline constexpr int background_cell_px = 64;
-inline constexpr double seed_snr = 5.0;       // minimum peak of a source in the filtered frame
-inline constexpr double connect_snr = 3.0;    // threshold of its pixels
-inline constexpr double min_snr = 6.0;        // minimum SNR of the fitted flux
-inline constexpr double min_light_snr = 3.0;  // likewise where the flux has the errors of the ends
+inline constexpr double seed_snr = 5.0;     // minimum peak of a source in the filtered frame
+inline constexpr double connect_snr = 3.0;  // threshold of its pixels
+inline constexpr double min_snr = 6.0;      // minimum SNR of the fitted flux
+inline constexpr double min_light_snr =
+    3.0;  // of the fitted flux where it has the errors of the ends
 // Of a streak: minimum SNR with errors of its ends and of columns, and the matched filter's that no
 // noise reaches.
 inline constexpr double min_published_snr = 4.0, sure_snr = 15.0;
@@ -27,8 +28,8 @@ inline constexpr double faint_per_px = 4.0;
 inline constexpr double chain_px = 30.0;
 // Relative error of the PSF in comparisons of shape.
 inline constexpr double model_error = 0.03;
-// The same for the wings of a saturated source: per square of the sigma at which they begin, with
-// minimum and maximum.
+// Relative error of the wings of a saturated source: per square of the sigma at which they begin,
+// with minimum and maximum.
 inline constexpr double wings_error = 0.02, min_wings_error = 0.1, max_wings_error = 0.5;
 // Where the background's level is missed by more than this in units of a pixel's noise, streaks
 // without a single bright pixel are not searched for.

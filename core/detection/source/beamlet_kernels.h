@@ -15,7 +15,7 @@ struct BeamletHit {
 /// Sums of a strip and of its halves that are large enough, by rising column.
 struct BeamletHits {
   BeamletHit* whole = nullptr;   // room for four of each column
-  BeamletHit* halves = nullptr;  // likewise
+  BeamletHit* halves = nullptr;  // room for as many
   std::size_t in_whole = 0, in_halves = 0;
 };
 

@@ -64,7 +64,7 @@ struct Scene {
   FitPixel pixel(int x, int y) const {
     return pixel(x, y, background.level_dn(x, y), background.sigma_dn(x, y));
   }
-  /// The same where level and noise of the sky are known.
+  /// A pixel where level and noise of the sky are known.
   FitPixel pixel(int x, int y, float level_dn, float sigma_dn) const {
     const double noise_e = sigma_dn * gain_e_per_dn;
     return {x, y, float((counts.at(x, y) - level_dn) * gain_e_per_dn), float(noise_e * noise_e)};

@@ -144,14 +144,14 @@ class Candidate {
       return std::nullopt;
     return source;
   }
-  /// The same, empty also if it is too faint.
+  /// The source, empty also if it is too faint.
   std::optional<Source> bright_source(const Trail& start, bool streak) const {
     auto bright = source(start, streak);
     if (bright && bright->snr() < detection_limits::min_snr) bright.reset();
     return bright;
   }
 
-  /// The same, empty also if it does not stand out from the noise by `min_snr`.
+  /// The source, empty also if it does not stand out from the noise by `min_snr`.
   std::optional<Source> significant_source(const Trail& start, double min_snr) const {
     auto significant = source(start, start.length_px > 0.0);
     if (!significant) return significant;

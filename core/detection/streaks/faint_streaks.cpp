@@ -25,6 +25,24 @@ constexpr double short_in_sigmas = 12.0;
 constexpr int max_failures = 30;  // of fits: a frame of so many structures has no faint streaks
 constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
+constexpr double sum_misses_px = 32.0;  // length up to which the sum may miss so much
+// Of the SNR of a candidate: less is left where a streak that was found since has hidden it.
+constexpr double left_share = 0.8;
+constexpr double star_ratio = 1.2;  // of SNRs, by which a star's trail explains a short candidate
+// Of the SNR along the line: a fit with less went elsewhere.
+constexpr double fitted_share = 0.7;
+// Of the least SNR: the fit also fits the sky, which costs some; of a faint patch it costs more.
+constexpr double sky_share = 0.85;
+constexpr double max_chi2 = 2.0;     // reduced: with more it is no line of light
+constexpr double piece_share = 0.9;  // of a streak's length, at most, that a piece of it has
+constexpr double arc_px = 100.0;     // from which length on a bend shows at any SNR
+constexpr double bright_arc_px = 15.0, bright_arc_snr = 12.0;  // and with this SNR, as brightness
+constexpr double min_climb_snr = 3.0;  // from which on a climb moves ends and bend, too
+// Scatter over noise, and share of hidden pixels, that any cell has by chance.
+constexpr double usual_scatter = 0.05, usual_hidden = 0.1;
+// Least SNR of 16 px, and by how much it rises with each doubling, to 64 px: longer lines are tried
+// at more places.
+constexpr double short_streak_snr = 6.5, snr_per_doubling = 0.5, shortest_px = 16.0;
 
 Trail trail_of(const Beamlet& b) {
   return {.x_px = 0.5 * (b.x1 + b.x2),
@@ -60,11 +78,11 @@ void hide(FilteredFrame& frame, TurnedFrame& turned, const Trail& t, double marg
 /// The fit of a streak of `snr`. What it is too faint to show is not fitted.
 std::optional<Source> fitted(const Scene& scene, const Trail& trail, double snr) {
   unsigned free = trail_line;
-  if (trail.length_px > 100) free |= trail_sagitta;
-  if (snr > 12 && trail.length_px > 15) free |= trail_slope | trail_sagitta;
+  if (trail.length_px > arc_px) free |= trail_sagitta;
+  if (snr > bright_arc_snr && trail.length_px > bright_arc_px) free |= trail_slope | trail_sagitta;
   for (const unsigned mask : {free, unsigned(trail_line), unsigned(trail_place)}) {
     auto source = fit_source(scene, trail, true, 0.0, false, mask);
-    if (source && source->snr() > 0.7 * snr) return source;
+    if (source && source->snr() > fitted_share * snr) return source;
   }
   return std::nullopt;
 }
@@ -85,9 +103,8 @@ double star_snr_on(const FilteredFrame& frame, const Trail& trail, Trail star) {
 
 bool is_streak(const Scene& scene, const Source& source) {
   const Trail& t = source.trail();
-  // The fit also fits the sky, which costs some of the SNR; of a faint patch of sky it costs more.
-  if (source.snr() < 0.85 * min_streak_snr(t.length_px)) return false;
-  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > 2.0) return false;
+  if (source.snr() < sky_share * min_streak_snr(t.length_px)) return false;
+  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > max_chi2) return false;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
   if (may_be_row_of_stars(scene, t, chain_px) &&
       (is_wide_body(scene, source) || !beats_stars(scene, source)))
@@ -119,7 +136,8 @@ std::vector<Source> pieces(const Scene& scene, Source source) {
     for (const Extent& side : {Extent{all.from, gap->from - 1}, Extent{gap->to + 1, all.to}}) {
       if (side.to - side.from < 2) continue;
       auto piece = fitted(scene, trail_along(line, side, e_per_px), 0.0);
-      if (!piece || piece->trail().length_px > 0.9 * t.length_px || !is_streak(scene, *piece))
+      if (!piece || piece->trail().length_px > piece_share * t.length_px ||
+          !is_streak(scene, *piece))
         continue;
       for (Source& part : pieces(scene, std::move(*piece))) out.push_back(std::move(part));
     }
@@ -142,7 +160,7 @@ Source with_hidden_light(const Scene& scene, const Scene& seen, Source source) {
   longer.length_px += gaps.first_px + gaps.last_px;
   longer.flux_e *= longer.length_px / t.length_px;
   auto whole = fitted(scene, longer, source.snr());
-  if (whole && whole->snr() > source.snr() && whole->fit.reduced_chi2() < 2.0 &&
+  if (whole && whole->snr() > source.snr() && whole->fit.reduced_chi2() < max_chi2 &&
       whole->trail().length_px < longer.length_px + 4 * scene.sigma_px)
     return std::move(*whole);
   add_errors_of_hidden_ends(seen, source);
@@ -158,7 +176,7 @@ Trail best_line_through(const FilteredFrame& frame, const Trail& place, double s
   double most = 0.0;
   for (int k = 0; k < directions; ++k) {
     line.angle_rad = pi * k / directions;
-    const Trail trial = climbed(frame, line, 3.0);
+    const Trail trial = climbed(frame, line, min_climb_snr);
     const double snr = snr_along(frame, trial);
     if (!(snr > most)) continue;
     most = snr;
@@ -198,7 +216,8 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
   const bool is_short = known.length_px < short_in_sigmas * scene.sigma_px;
   std::optional<Source> fit;
   if (source.streak)
-    fit = fitted_longer(scene, frame, source, climbed(frame, known, 3.0), false, known_snr);
+    fit =
+        fitted_longer(scene, frame, source, climbed(frame, known, min_climb_snr), false, known_snr);
   if (!fit && is_short)
     fit = fitted_longer(scene, frame, source, best_line_through(frame, known, scene.sigma_px), true,
                         known_snr);
@@ -209,12 +228,13 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
 
 double crowding(const FilteredFrame& frame, const Trail& trail) {
   const FilteredFrame::Cell cell = frame.cell_at(trail.x_px, trail.y_px);
-  const double scatter = std::max(1.0, double(cell.scatter) - 0.05);
-  return scatter * (1.0 + std::max(0.0, double(cell.hidden) - 0.1));
+  const double scatter = std::max(1.0, double(cell.scatter) - usual_scatter);
+  return scatter * (1.0 + std::max(0.0, double(cell.hidden) - usual_hidden));
 }
 
 double min_streak_snr(double length_px) {
-  return 6.5 + 0.5 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
+  return short_streak_snr +
+         snr_per_doubling * std::clamp(std::log2(length_px / shortest_px), 0.0, 2.0);
 }
 
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
@@ -240,12 +260,13 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
   for (const Beamlet& beamlet : beamlets) {
     Trail trail = trail_of(beamlet);
     if (beamlet.snr < candidate_snr) continue;  // `find_beamlets` rounds its threshold down
-    if (snr_along(frame, trail) < 0.8 * candidate_snr) continue;  // hidden meanwhile
+    if (snr_along(frame, trail) < left_share * candidate_snr) continue;
     if (std::any_of(tried.begin(), tried.end(),
                     [&](const Trail& t) { return is_part_of(trail, t, margin_px); }))
       continue;
     const Trail star = scene.star_trail(trail.x_px, trail.y_px);
-    if (trail.length_px < chain_px && star_snr_on(frame, trail, star) > 1.2 * beamlet.snr) continue;
+    if (trail.length_px < chain_px && star_snr_on(frame, trail, star) > star_ratio * beamlet.snr)
+      continue;
     // Where the light along parallel lines scatters more than noise, so must a streak.
     const ParallelLines around = parallel_lines(frame, turned, trail, band);
     if (beamlet.snr < around.median + candidate_snr * around.scatter) continue;
@@ -256,7 +277,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     if (line.samples < min_share * line.slices) continue;
     if (snr < min_streak_snr(trail.length_px)) {
       // The sum of a short line misses light beside its ends.
-      const double misses = sum_misses_snr * std::min(1.0, 32 / trail.length_px);
+      const double misses = sum_misses_snr * std::min(1.0, sum_misses_px / trail.length_px);
       if (trail.length_px > template_px || snr < min_streak_snr(trail.length_px) - misses) continue;
       const TemplateMatch match = best_template(seen, trail);
       if (match.snr < min_streak_snr(match.trail.length_px)) continue;

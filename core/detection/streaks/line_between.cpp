@@ -15,7 +15,7 @@ constexpr double edge_sigmas = 4.0;              // of the PSF, within which lig
 constexpr double across_sigmas = 2.5;            // within which pixels are used
 constexpr double outlier = 4.0;                  // standard deviations
 constexpr double end_sigmas = 2.0;               // of the PSF, by which an end may miss an edge
-constexpr double gap_sigmas = 5.0;  // likewise, of a gap in which nothing is known of a trail
+constexpr double gap_sigmas = 5.0;  // of the PSF, of a gap in which nothing is known of a trail
 
 /// A pixel in the fit of a line's light per px: its light and weight at a place along the line, by
 /// the share of that light in it and its variance.

@@ -50,8 +50,8 @@ struct DepositView {
 
 /// Returns all pixels of an image, which are the frame.
 DepositView view_of(ExpectedElectronImage& image);
-/// The same pixels; `Deposited` does not count a border of the frame, `border` pixels of the view
-/// wide.
+/// A view of these pixels; `Deposited` does not count a border of the frame, `border` pixels of the
+/// view wide.
 DepositView without_border(DepositView view, int border);
 
 /// Whose light inside the frame is summed: that of all arcs, or of those that the frame's rim cuts.

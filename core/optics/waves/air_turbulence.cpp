@@ -21,7 +21,7 @@ double speckle_contrast(const AirFacts& air) {
   return 1.0 / std::sqrt(air.screens * cells);
 }
 
-/// The same of all that is beyond a radius: there is a speckle for each square of wavelength /
+/// Scatter of all that is beyond a radius: there is a speckle for each square of wavelength /
 /// aperture.
 double rim_contrast(const AirFacts& air, double radius_px) {
   return std::min(1.0, air.airy_px / radius_px) / std::sqrt(double(air.screens));

@@ -55,8 +55,8 @@ class RealFft2 {
   void convolve(FftBuffer& image, const std::vector<char>& lit, int wanted_begin, int wanted_end,
                 const Spectrum& spectrum, Threads& threads) const;
 
-  /// The same in two steps, so that images with different kernels share one inverse transform: adds
-  /// the product of two spectra to `sum`, initially zero, and transforms back.
+  /// Convolves in two steps, so that images with different kernels share one inverse transform:
+  /// adds the product of two spectra to `sum`, initially zero, and transforms back.
   void add_product(FftBuffer& image, const std::vector<char>& lit, const Spectrum& spectrum,
                    FftBuffer& sum, Threads& threads) const;
   void invert(FftBuffer& sum, int wanted_begin, int wanted_end, Threads& threads) const;

@@ -39,7 +39,7 @@ struct CalendarTime {
 /// Source: CCSDS 301.0-B-4, ASCII time codes A and B.
 std::optional<CalendarTime> parse_calendar_time(std::string_view text);
 
-/// The same as UTC; empty for second 60 on a day without a leap second.
+/// Reads an ISO epoch as UTC; empty for second 60 on a day without a leap second.
 std::optional<Utc> parse_iso_epoch(std::string_view text);
 
 /// `2018-01-20T23:40:00.123` with `decimals` in [0, 6] of a second, rounded to nearest; for any

@@ -22,7 +22,7 @@ class OmmFields {
   /// Trimmed text of a key; empty if missing or null. Throws `RecordError` if the key is there
   /// twice, is an array or an object, or has another unit than the standard's.
   std::string_view get(std::string_view key) const;
-  /// The same. Throws `RecordError` also if there is no text.
+  /// Text of a key that must be there. Throws `RecordError` also if there is no text.
   std::string_view required(std::string_view key) const;
   bool empty() const { return fields_.empty(); }
   void clear() { fields_.clear(); }

@@ -62,14 +62,14 @@ class Sgp4Batch {
                  std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
                  Threads* threads = nullptr) const;
 
-  /// The same at several instants: results of `times[k]` begin at [3 k size()] and [k size()] and
+  /// Propagates to several instants: results of `times[k]` begin at [3 k size()] and [k size()] and
   /// equal those of a separate call to the bit. Cheaper, because a block's terms are read once for
   /// several times.
   void propagate(std::span<const Utc> times, std::span<double> position_m,
                  std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
                  Threads* threads = nullptr) const;
 
-  /// The same for some objects: result k is that of object `objects[k]` (any order, repeats
+  /// Propagates some objects: result k is that of object `objects[k]` (any order, repeats
   /// allowed).
   void propagate_some(std::span<const std::uint32_t> objects, double jd1, double jd2,
                       std::span<double> position_m, std::span<double> velocity_m_per_s,

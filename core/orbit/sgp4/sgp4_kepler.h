@@ -17,7 +17,7 @@ struct Anomaly {
 
 /// 1 / (1 - x), error x^4.
 DMISE_INLINE Pack inverse_of_one_minus(Pack x) { return madd(madd(x + 1.0, x, 1.0), x, 1.0); }
-/// The same, error x^6.
+/// 1 / (1 - x) with an error of x^6.
 DMISE_INLINE Pack inverse_of_one_minus_6(Pack x) {
   const Pack x2 = x * x;
   const Pack y = x + 1.0;

@@ -14,11 +14,32 @@
 namespace dmise::sgp4 {
 namespace {
 
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+using Doubles = __m512d;
+#elif defined(__AVX2__) && defined(__FMA__)
+using Doubles = __m256d;
+#else
+using Doubles = double __attribute__((vector_size(16)));
+#endif
+
+constexpr int one_lanes = sizeof(Doubles) / sizeof(double);
+
+struct One {
+  Doubles v;
+  One() = default;
+  DMISE_INLINE One(Doubles x) : v(x) {}
+  DMISE_INLINE One(double x) : v(x - Doubles{}) {}
+};
+DMISE_INLINE void store_anywhere(double* p, One a) { __builtin_memcpy(p, &a.v, sizeof a.v); }
+DMISE_INLINE One operator+(One a, One b) { return a.v + b.v; }
+DMISE_INLINE One operator-(One a, One b) { return a.v - b.v; }
+DMISE_INLINE One operator*(One a, One b) { return a.v * b.v; }
+DMISE_INLINE One operator/(One a, One b) { return a.v / b.v; }
+
 // madd(a, b, c) = a b + c and nmadd(a, b, c) = c - a b: fused on purpose where FMA exists.
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 
-constexpr int one_lanes = 8;
 constexpr bool fused = true;
 
 struct OneMask {
@@ -30,23 +51,12 @@ DMISE_INLINE OneMask operator~(OneMask a) { return {__mmask8(~a.m)}; }
 DMISE_INLINE unsigned bits(OneMask a) { return a.m; }
 DMISE_INLINE void store_bits(std::uint8_t* to, OneMask a) { _store_mask8(to, a.m); }
 
-struct One {
-  __m512d v;
-  One() = default;
-  DMISE_INLINE One(__m512d x) : v(x) {}
-  DMISE_INLINE One(double x) : v(_mm512_set1_pd(x)) {}
-};
 DMISE_INLINE One load_one(const double* p) { return _mm512_load_pd(p); }
 DMISE_INLINE void store(double* p, One a) { _mm512_store_pd(p, a.v); }
-DMISE_INLINE void store_anywhere(double* p, One a) { _mm512_storeu_pd(p, a.v); }
 /// Stores the lanes of `mask` to an unaligned address.
 DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
   _mm512_mask_storeu_pd(p, __mmask8(mask), a.v);
 }
-DMISE_INLINE One operator+(One a, One b) { return _mm512_add_pd(a.v, b.v); }
-DMISE_INLINE One operator-(One a, One b) { return _mm512_sub_pd(a.v, b.v); }
-DMISE_INLINE One operator*(One a, One b) { return _mm512_mul_pd(a.v, b.v); }
-DMISE_INLINE One operator/(One a, One b) { return _mm512_div_pd(a.v, b.v); }
 DMISE_INLINE One madd(One a, One b, One c) { return _mm512_fmadd_pd(a.v, b.v, c.v); }
 DMISE_INLINE One nmadd(One a, One b, One c) { return _mm512_fnmadd_pd(a.v, b.v, c.v); }
 DMISE_INLINE One sqrt(One a) { return _mm512_sqrt_pd(a.v); }
@@ -77,7 +87,6 @@ DMISE_INLINE One negate_odd(One x, One odd) {
 
 #elif defined(__AVX2__) && defined(__FMA__)
 
-constexpr int one_lanes = 4;
 constexpr bool fused = true;
 
 struct OneMask {
@@ -90,24 +99,13 @@ DMISE_INLINE OneMask operator~(OneMask a) {
 }
 DMISE_INLINE unsigned bits(OneMask a) { return unsigned(_mm256_movemask_pd(a.m)); }
 
-struct One {
-  __m256d v;
-  One() = default;
-  DMISE_INLINE One(__m256d x) : v(x) {}
-  DMISE_INLINE One(double x) : v(_mm256_set1_pd(x)) {}
-};
 DMISE_INLINE One load_one(const double* p) { return _mm256_load_pd(p); }
 DMISE_INLINE void store(double* p, One a) { _mm256_store_pd(p, a.v); }
-DMISE_INLINE void store_anywhere(double* p, One a) { _mm256_storeu_pd(p, a.v); }
 DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
   const __m256i lane = _mm256_set_epi64x(8, 4, 2, 1);
   _mm256_maskstore_pd(p, _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(mask), lane), lane),
                       a.v);
 }
-DMISE_INLINE One operator+(One a, One b) { return _mm256_add_pd(a.v, b.v); }
-DMISE_INLINE One operator-(One a, One b) { return _mm256_sub_pd(a.v, b.v); }
-DMISE_INLINE One operator*(One a, One b) { return _mm256_mul_pd(a.v, b.v); }
-DMISE_INLINE One operator/(One a, One b) { return _mm256_div_pd(a.v, b.v); }
 DMISE_INLINE One madd(One a, One b, One c) { return _mm256_fmadd_pd(a.v, b.v, c.v); }
 DMISE_INLINE One nmadd(One a, One b, One c) { return _mm256_fnmadd_pd(a.v, b.v, c.v); }
 DMISE_INLINE One sqrt(One a) { return _mm256_sqrt_pd(a.v); }
@@ -127,14 +125,12 @@ DMISE_INLINE One negate_odd(One x, One odd) {
 
 #else
 
-constexpr int one_lanes = 2;
 #if defined(__FP_FAST_FMA)  // as on AArch64
 constexpr bool fused = true;
 #else
 constexpr bool fused = false;
 #endif
 
-using Doubles = double __attribute__((vector_size(16)));
 using Words = std::int64_t __attribute__((vector_size(16)));
 
 struct OneMask {
@@ -151,16 +147,9 @@ DMISE_INLINE unsigned bits(OneMask a) {
 #endif
 }
 
-struct One {
-  Doubles v;
-  One() = default;
-  DMISE_INLINE One(Doubles x) : v(x) {}
-  DMISE_INLINE One(double x) : v{x, x} {}
-};
 DMISE_INLINE One load_one(const double* p) {
   return *reinterpret_cast<const Doubles*>(__builtin_assume_aligned(p, 16));
 }
-DMISE_INLINE void store_anywhere(double* p, One a) { __builtin_memcpy(p, &a.v, sizeof a.v); }
 DMISE_INLINE void store(double* p, One a) {
   store_anywhere(static_cast<double*>(__builtin_assume_aligned(p, 16)), a);
 }
@@ -168,10 +157,6 @@ DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
   if (mask & 1u) p[0] = a.v[0];
   if (mask & 2u) p[1] = a.v[1];
 }
-DMISE_INLINE One operator+(One a, One b) { return a.v + b.v; }
-DMISE_INLINE One operator-(One a, One b) { return a.v - b.v; }
-DMISE_INLINE One operator*(One a, One b) { return a.v * b.v; }
-DMISE_INLINE One operator/(One a, One b) { return a.v / b.v; }
 DMISE_INLINE One madd(One a, One b, One c) {
   if constexpr (!fused) return a * b + c;
   return Doubles{__builtin_fma(a.v[0], b.v[0], c.v[0]), __builtin_fma(a.v[1], b.v[1], c.v[1])};

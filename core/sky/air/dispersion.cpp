@@ -33,7 +33,7 @@ Lit lit_part(const Band& band) {
   return lit;
 }
 
-/// The same air at another wavelength, held within what eraRefco takes.
+/// Refraction of this air at another wavelength, held within what eraRefco takes.
 Refraction refraction_at(const Refraction& air, double wavelength_m) {
   return Refraction(air.weather(), std::clamp(wavelength_m / um, 0.1, 100.0));
 }

@@ -33,7 +33,7 @@ class BandExtinction {
 
   /// For a star of this B-V (`star_spectrum`); airmass in [0, 40], beyond it is clamped.
   double of_star(double airmass, double bv) const;
-  /// The same of many, to 1e-15 of it.
+  /// Factors of many stars, to 1e-15 of it.
   void of_stars(std::span<const double> airmass, std::span<const double> bv,
                 std::span<double> share) const;
   /// For sunlit objects: as for a star of the Sun's colour.

@@ -26,7 +26,7 @@ class GrazingAir {
   /// Share of the Sun's light that is left at `distance_m` from the centre of an Earth of
   /// `radius_m`, 0..1.
   double light(const LowSun& sun, double distance_m, double radius_m) const;
-  /// The same without air: a sharp limb before a Sun that darkens towards its own.
+  /// Light without air: a sharp limb before a Sun that darkens towards its own.
   double light_past_sharp_limb(const LowSun& sun) const;
 
   /// Bending [rad] and transmission (0..1) of a ray by its lowest height, of the nearest node of

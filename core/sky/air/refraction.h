@@ -44,7 +44,7 @@ class Refraction {
   double at_apparent_rad(double apparent_elevation_rad) const;
 
   double apparent_from_true_rad(double true_elevation_rad, double distance_m = star) const;
-  /// The same of an elevation given by its sine and cosine (>= 0): for most stars nothing but
+  /// An elevation given by its sine and cosine (>= 0): for most stars nothing but
   /// arithmetic.
   struct Elevation {
     double sine, cosine;

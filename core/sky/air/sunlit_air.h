@@ -31,7 +31,7 @@ class AirColumns {
   Level level(double height_m) const;
   /// Upwards, `cos_zenith` in 0..1.
   AirColumn upwards(const Level& level, double cos_zenith) const;
-  /// The same downwards, `cos_zenith` in -1..0: past the lowest place of the line, which is at
+  /// Air of a line downwards, `cos_zenith` in -1..0: past the lowest place of the line, which is at
   /// `lowest_m` >= 0.
   AirColumn downwards(const Level& level, double cos_zenith, double lowest_m) const;
 

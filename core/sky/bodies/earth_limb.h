@@ -9,7 +9,7 @@ namespace dmise {
 double above_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction,
                       const OblateEarth& earth);
 
-/// The same from the limb's nearest point [rad]. It is less than the angle in that plane by 1e-5 of
+/// Angle from the limb's nearest point [rad]. It is less than the angle in that plane by 1e-5 of
 /// it near the limb, by up to 0.5 deg near the zenith from low orbit.
 double from_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction, const OblateEarth& earth);
 

@@ -33,7 +33,7 @@ class LimbExtinction {
   /// from the observer.
   double of_point(const Vec<Gcrs>& direction,
                   double distance_m = std::numeric_limits<double>::infinity()) const;
-  /// The same of the surface brightness of what is behind.
+  /// Factor of the surface brightness of what is behind.
   double of_surface(const Vec<Gcrs>& direction) const { return of_surface(sight_.line(direction)); }
   double of_surface(const LimbLine& line) const;
 

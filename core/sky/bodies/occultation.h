@@ -16,7 +16,7 @@ class FreeSight {
   /// Whether the straight line to `to_m` stays outside the ellipsoid. False when `to_m` is inside.
   bool clear(const Vec<Gcrs>& to_m) const;
 
-  /// The same without an end, for stars. `direction` of any length > 0.
+  /// Whether a line without an end is clear, for stars. `direction` of any length > 0.
   bool clear_direction(const Vec<Gcrs>& direction) const;
 
   const OblateEarth& earth() const { return earth_; }

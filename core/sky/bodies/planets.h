@@ -28,7 +28,7 @@ const PlanetFacts& facts_of(Planet planet);
 /// DE423 from 1900 to 2100.
 Vec<Gcrs> heliocentric_m(Planet planet, const Tt& tt);
 
-/// The same without the sinusoids, seen from the Earth within 2 arcmin, in a tenth of the time.
+/// Position without the sinusoids, seen from the Earth within 2 arcmin, in a tenth of the time.
 Vec<Gcrs> roughly_heliocentric_m(Planet planet, const Tt& tt);
 
 /// The line from an observer at `tt` to a planet `dt_s` later, geometric [m]. `observer_m`: from

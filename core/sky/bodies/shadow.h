@@ -40,9 +40,9 @@ class EarthShadow {
   /// continuous, monotone through the penumbra. Throws `Error` for a place inside the Earth.
   double sunlit_fraction(const Vec<Gcrs>& object_m) const;
 
-  /// The same for a whole catalogue: `position_m` is all x, all y, all z of `fraction.size()`
-  /// objects. Those inside the Earth (and those without a state, whose position is 0) get 0.
-  /// Returns how many.
+  /// Fractions of the objects of a catalogue: `position_m` is all x, all y, all z of
+  /// `fraction.size()` objects. Those inside the Earth (and those without a state, whose position
+  /// is 0) get 0. Returns how many.
   std::size_t sunlit_fractions(std::span<const double> position_m,
                                std::span<double> fraction) const;
 

@@ -75,7 +75,7 @@ class ApparentPlaces {
     return place;
   }
 
-  /// The same for a straight path at the observer's time: exact to 3 mm from LEO to GEO.
+  /// Place on a straight path at the observer's time: exact to 3 mm from LEO to GEO.
   SatellitePlace satellite(const Vec<Gcrs>& position_m, const Vec<Gcrs>& slope_m_per_s) const {
     return satellite([&](double dt_s) { return position_m + slope_m_per_s * dt_s; });
   }

@@ -20,7 +20,7 @@ class Parallax {
   void apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const {
     place = place - catalogued.star.parallax_rad * barycentric_au_;
   }
-  /// The same of many stars.
+  /// Shifts many stars.
   void apply(double, CatalogueMotion& motion) const {
     motion.au[0] = barycentric_au_.x;
     motion.au[1] = barycentric_au_.y;

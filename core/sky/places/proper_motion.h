@@ -19,7 +19,7 @@ class ProperMotion {
   explicit ProperMotion(const Observer& observer);
   /// `place`: of the star, in units of its distance.
   void apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const;
-  /// The same of many stars of one epoch, without radial velocities.
+  /// Moves many stars of one epoch, without radial velocities.
   void apply(double epoch_jyear, CatalogueMotion& motion) const;
 
  private:

@@ -20,7 +20,7 @@ struct CataloguedStar {
   Vec<Gcrs> outward, east, north;
 
   explicit CataloguedStar(const StarPlace& place);
-  /// The same where the direction of the place is known (unit).
+  /// A star where the direction of the place is known (unit).
   CataloguedStar(const StarPlace& place, const Vec<Gcrs>& direction);
 };
 

@@ -34,7 +34,7 @@ Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt);
 /// outside 1900 to 2100.
 SolarSystem solar_system(const Tt& tt);
 
-/// The same `dt_s` later, up to an hour: the bodies go on with their velocities and the pull of
+/// The bodies `dt_s` later, up to an hour: they go on with their velocities and the pull of
 /// Sun, Earth and Moon. After an hour the Sun is within 0.1 arcsec, the Moon within 1 arcsec, the
 /// Earth's velocity within 10 mm/s of the ephemeris.
 SolarSystem advance(SolarSystem bodies, double dt_s);

@@ -103,7 +103,7 @@ void move_star(StarCatalogue& c, std::size_t i, double from_jyear, double to_jye
   const auto [ra, dec] = to_spherical(moved);
   c.ra_rad[i] = ra;
   c.dec_rad[i] = dec;
-  // The same space motion, seen along the axes of the new place.
+  // Its space motion does not change, seen along the axes of the new place.
   const double distance = norm(moved);
   const Vec<Gcrs> east_now{-std::sin(ra), std::cos(ra), 0.0};
   const Vec<Gcrs> north_now = cross(moved / distance, east_now);

@@ -63,7 +63,7 @@ using StarCatalogue = StarFields<StarVector>;
 /// A finished one, which is shared and not changed.
 using StarTable = StarFields<Column>;
 
-/// The same stars in the same order.
+/// A table of these stars in their order.
 StarTable table_of(StarCatalogue catalogue);
 
 /// One star as a reader finds it, before what is missing gets its stated default.

@@ -35,7 +35,7 @@ StarReading parse_hyg(std::string_view text, const std::string& name);
 StarReading parse_bsc5(std::string_view text, const std::string& name);
 /// CSV, or ECSV with commas: columns of Gaia's table gaia_source by the names in their header.
 StarReading parse_gaia_csv(std::string_view text, const std::string& name);
-/// The same columns in a FITS binary table.
+/// Reads these columns of a FITS binary table.
 StarReading parse_gaia_fits(std::string_view bytes, const std::string& name);
 /// deepstars.dat of KStars: Tycho-2 from V = 8 on, binary, places of J2000.0.
 StarReading parse_deep_stars(std::string_view bytes, const std::string& name);

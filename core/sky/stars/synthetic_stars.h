@@ -37,7 +37,7 @@ class SyntheticStars {
   void visit(const Vec<Gcrs>& axis, double radius_rad, double faintest_v_mag,
              const std::function<void(const Stars&)>& use) const;
   static constexpr std::size_t stars_at_a_time = 512;
-  /// The same in one piece.
+  /// Stars of the cone in one piece.
   Stars around(const Vec<Gcrs>& axis, double radius_rad, double faintest_v_mag) const;
 
   /// Expected number of stars of `around`, without subtracting a catalogue's.

@@ -46,7 +46,7 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
                                 std::span<const AngleObservation> observations,
                                 const BatchSettings& batch = {}, const OrbitLimits& limits = {});
 
-/// The same, but returns all orbits within the limits to which the candidates lead, by growing
+/// Returns all orbits within the limits to which the candidates lead, by growing
 /// chi-square; one may be there several times. Residuals are in order of time.
 Outcome<std::vector<BatchFit>> one_arc_orbits(const ForceModel& forces,
                                               std::span<const AngleObservation> observations,

@@ -26,7 +26,7 @@ class PeerDirectory {
   /// Adds a process; it replaces an earlier one of its name.
   void add(std::string_view routing_id, std::uint64_t incarnation, const v1::Join& join,
            std::uint64_t heartbeat_token);
-  /// The same for a node of a host, which shares the connection of its agent.
+  /// Adds a node of a host, which shares the connection of its agent.
   void add_behind(std::string_view agent, std::uint64_t incarnation, const v1::Join& join,
                   std::uint64_t heartbeat_token);
 
@@ -49,7 +49,8 @@ class PeerDirectory {
   /// Publishers with their topics and addresses, independent of the receiver. Observers are
   /// omitted.
   v1::Topology topology() const;
-  /// The same for an observer, which receives through bounded queues and publishes nothing.
+  /// Makes the topology for an observer, which receives through bounded queues and publishes
+  /// nothing.
   void make_for_observer(v1::Topology* topology) const;
   /// Topics with consumers.
   std::set<std::string, std::less<>> consumed() const;

@@ -170,7 +170,7 @@ struct ZapAuthenticator::Work {
           welcome ? properties_of(who->second) : "");
   }
 
-  /// The same for two credentials: user name and password.
+  /// Answers a request with two credentials: user name and password.
   void answer_plain(const std::vector<std::string>& request) {
     const bool welcome =
         request.size() == 8 && request[5] == "PLAIN" && is_same(request[7], password);

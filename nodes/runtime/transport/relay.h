@@ -12,7 +12,7 @@ inline constexpr int relay_burst = 1000;
 /// Forwards up to `relay_burst` waiting messages from `from`; returns how many.
 int relay_messages(zmq::socket_t& from, zmq::socket_t& to);
 
-/// The same for publishers authenticated by keys. Messages under a name that the sender may not use
+/// Relay for publishers authenticated by keys. Messages under a name that the sender may not use
 /// are dropped and counted in `refused`; the first is logged.
 int relay_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
                   std::uint64_t* refused);

@@ -25,7 +25,7 @@ inline constexpr std::size_t max_frames = 8;
 /// Messages queued for a peer of a ROUTER, or for a subscriber of a public socket, that does not
 /// read; further ones are dropped.
 inline constexpr int max_unread = 4096;
-/// The same where a reply may be a whole tick of states; peers repeat unanswered requests.
+/// Unread answers where a reply may be a whole tick of states; peers repeat unanswered requests.
 inline constexpr int max_unread_answers = 256;
 /// Largest request for published messages.
 inline constexpr std::int64_t max_question_bytes = 4096;

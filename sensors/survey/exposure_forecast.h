@@ -14,7 +14,7 @@
 namespace dmise {
 
 /// An object with light in one exposure, as it is expected without rendering.
-struct Look {
+struct ExpectedDetection {
   std::uint32_t object = 0;  // index in the population
   double signal_e = 0.0;     // of its light in the frame
   double length_px = 0.0;    // of its lit trail in the frame
@@ -33,25 +33,25 @@ struct Look {
 };
 
 /// One exposure without rendering it.
-struct ExposureLooks {
-  std::vector<Look> looks;     // by ascending object
-  std::uint32_t in_field = 0;  // objects in the frame and above the mask in mid exposure
-  std::uint32_t sunlit = 0;    // those of them that see half of the Sun's disc or more
-  bool closed = false;         // the shutter: nothing is in the frame
+struct ExposureForecast {
+  std::vector<ExpectedDetection> looks;  // by ascending object
+  std::uint32_t in_field = 0;            // objects in the frame and above the mask in mid exposure
+  std::uint32_t sunlit = 0;              // those of them that see half of the Sun's disc or more
+  bool closed = false;                   // the shutter: nothing is in the frame
 };
 
 /// What is expected in the exposures of one sensor: by the same states, directions, light, sky and
 /// noise as its frames have (`ObjectSampler`, `SkyModel`, `expected_noise`), at three instants of
 /// an exposure. Calls are const and may run concurrently.
-class SensorLooks {
+class SensorForecast {
  public:
   /// Both must outlive it. Throws `ConfigError` for a platform or target that is not in the
   /// population.
-  SensorLooks(const SurveyScene& scene, const SensorConfig& sensor);
+  SensorForecast(const SurveyScene& scene, const SensorConfig& sensor);
 
   /// Looks at `objects`, ascending indices. Nothing if the platform or the target has no state.
-  std::optional<ExposureLooks> of(const FrameTimes& commanded,
-                                  std::span<const std::uint32_t> objects) const;
+  std::optional<ExposureForecast> of(const FrameTimes& commanded,
+                                     std::span<const std::uint32_t> objects) const;
 
  private:
   const SurveyScene& scene_;

@@ -1,4 +1,4 @@
-#include "core/visibility/sky_hours.h"
+#include "core/visibility/ephemeris_table.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@ namespace {
 
 // Between its hours, and in the first and last, which need not be whole: the ephemerides at the
 // instant itself.
-TEST(SkyHours, SunAndMoonAreWhereTheirEphemeridesHaveThem) {
+TEST(EphemerisTable, SunAndMoonAreWhereTheirEphemeridesHaveThem) {
   const Clock clock(parse_utc("2018-01-21T00:10:00Z"));
   const SimTime end{27LL * 86400 * 1'000'000'000};
-  const SkyHours sky(clock, {0}, end);
+  const EphemerisTable sky(clock, {0}, end);
   for (std::int64_t s = 0; s <= 27LL * 86400; s += 1777) {
     const SimTime t{s * 1'000'000'000};
     const Vec<Gcrs> moon = moon_m(clock.tt(t)), sun = solar_system(clock.tt(t)).sun_m;

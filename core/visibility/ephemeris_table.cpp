@@ -1,4 +1,4 @@
-#include "core/visibility/sky_hours.h"
+#include "core/visibility/ephemeris_table.h"
 
 #include <algorithm>
 
@@ -13,7 +13,8 @@ std::int64_t hour_of(SimTime t) {
 
 }  // namespace
 
-SkyHours::SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid)
+EphemerisTable::EphemerisTable(const Clock& clock, SimTime from, SimTime to,
+                               const Ellipsoid& ellipsoid)
     : clock_(clock), ellipsoid_(ellipsoid) {
   const auto sun_at = [&](std::int64_t k) { return solar_system(clock.tt({k * hour_ns})).sun_m; };
   const auto moon_at = [&](std::int64_t half_hours) {
@@ -34,23 +35,23 @@ SkyHours::SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid
   }
 }
 
-const SkyHours::Hour& SkyHours::hour(SimTime t) const {
+const EphemerisTable::Hour& EphemerisTable::hour(SimTime t) const {
   const std::int64_t k = (t.ns - hours_.front().start.ns) / hour_ns;
   return hours_[std::size_t(std::clamp<std::int64_t>(k, 0, std::int64_t(hours_.size()) - 1))];
 }
 
-Vec<Gcrs> SkyHours::sun_m(SimTime t) const {
+Vec<Gcrs> EphemerisTable::sun_m(SimTime t) const {
   const Hour& h = hour(t);
   return h.sun_m + h.sun_step_m * (double((t - h.start).ns) / double(hour_ns));
 }
 
-Vec<Gcrs> SkyHours::moon_m(SimTime t) const {
+Vec<Gcrs> EphemerisTable::moon_m(SimTime t) const {
   const Hour& h = hour(t);
   const double share = double((t - h.start).ns) / double(hour_ns);
   return h.moon_m + (h.moon_step_m + h.bend_m * share) * share;
 }
 
-Sunlight::Sunlight(const SkyHours& sky, SimTime t)
+Sunlight::Sunlight(const EphemerisTable& sky, SimTime t)
     : gcrs_from_teme_(sky.earth(t).gcrs_from_teme(t)),
       sun_m_(sky.sun_m(t)),
       shadow_(sun_m_, sky.surface(t)) {}

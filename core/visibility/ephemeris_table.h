@@ -11,10 +11,10 @@ namespace dmise {
 /// Earth, Sun and Moon over a span of time, computed once an hour; the result depends on the
 /// instant alone. Precession and nutation are constant over the hour (4 mas at its ends), the Sun
 /// moves linearly (0.02 arcsec), the Moon along a parabola (10 m). Immutable.
-class SkyHours {
+class EphemerisTable {
  public:
   /// For instants in [from, to]; `ellipsoid` casts the shadow.
-  SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid = wgs84);
+  EphemerisTable(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid = wgs84);
 
   const Clock& clock() const { return clock_; }
   const EarthOrientation& earth(SimTime t) const { return hour(t).earth; }
@@ -26,8 +26,9 @@ class SkyHours {
   struct Hour {
     SimTime start;
     EarthOrientation earth;
-    Vec<Gcrs> sun_m, sun_step_m;            // at its start, and from there to its end
-    Vec<Gcrs> moon_m, moon_step_m, bend_m;  // the same; by the share of the hour and its square
+    Vec<Gcrs> sun_m, sun_step_m;  // at its start, and from there to its end
+    Vec<Gcrs> moon_m, moon_step_m,
+        bend_m;  // as those of the Sun; by the share of the hour and its square
   };
   const Hour& hour(SimTime t) const;
 
@@ -42,7 +43,7 @@ inline constexpr double lit_fraction = 0.5;
 /// Sunlight at one instant, for states from SGP4.
 class Sunlight {
  public:
-  Sunlight(const SkyHours& sky, SimTime t);
+  Sunlight(const EphemerisTable& sky, SimTime t);
 
   /// Fraction of the Sun's disc visible past the oblate Earth, 0..1; 0 inside the Earth.
   double fraction(const Vec<Teme>& position_m) const;

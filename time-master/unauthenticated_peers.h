@@ -21,9 +21,10 @@ struct StrangerLimits {
 /// Queue of messages of processes that the clock does not wait for: peers take turns, each at a
 /// limited rate, and messages beyond the limits are ignored and counted.
 template <class Message>
-class StrangerQueue {
+class UnauthenticatedPeers {
  public:
-  explicit StrangerQueue(const StrangerLimits& limits) : limits_(limits), rates_(limits.rate) {}
+  explicit UnauthenticatedPeers(const StrangerLimits& limits)
+      : limits_(limits), rates_(limits.rate) {}
 
   /// False when the message is ignored.
   bool push(std::string_view peer, Message message, std::size_t bytes) {

@@ -1,4 +1,4 @@
-#include "sensors/survey/exposure_looks.h"
+#include "sensors/survey/exposure_forecast.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,9 +34,9 @@ DrawnStars drawn_of(const SurveyScene& scene, const SensorConfig& sensor) {
 }
 
 /// Sets the lengths of a look that compare its trail with a star's at its centroid.
-void compare_with_star(Look& look, const std::vector<ObjectSample>& samples, const Optics& optics,
-                       const ExposureInstant& start, const ExposureInstant& middle,
-                       const ExposureInstant& end) {
+void compare_with_star(ExpectedDetection& look, const std::vector<ObjectSample>& samples,
+                       const Optics& optics, const ExposureInstant& start,
+                       const ExposureInstant& middle, const ExposureInstant& end) {
   const auto &a = samples.front().pixel, &b = samples.back().pixel;
   const auto direction = unproject(optics, look.centroid);
   if (!a || !b || !direction) return;
@@ -53,7 +53,7 @@ void compare_with_star(Look& look, const std::vector<ObjectSample>& samples, con
 
 }  // namespace
 
-SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
+SensorForecast::SensorForecast(const SurveyScene& scene, const SensorConfig& sensor)
     : scene_(scene),
       sensor_(sensor),
       shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects,
@@ -69,9 +69,9 @@ SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
     mask_sine_ = std::sin(sensor.mask_deg * deg);
 }
 
-std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
-                                             std::span<const std::uint32_t> objects) const {
-  ExposureLooks out;
+std::optional<ExposureForecast> SensorForecast::of(const FrameTimes& commanded,
+                                                   std::span<const std::uint32_t> objects) const {
+  ExposureForecast out;
   std::vector<std::uint32_t> all(objects.begin(), objects.end());
   all.insert(all.end(), needed_.begin(), needed_.end());
   std::sort(all.begin(), all.end());
@@ -149,15 +149,15 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     TrailInFrame trail = trail_in_frame(samples, times.seconds(), optics);
     if (!(trail.signal_e > 0.0)) continue;
     const auto look_at = [&](const TrailInFrame& lit) {
-      Look look{.object = object,
-                .signal_e = lit.signal_e,
-                .length_px = lit.length_px,
-                .star_known = lit.signal_e >= complete_e(line),
-                .centroid = lit.centroid};
+      ExpectedDetection look{.object = object,
+                             .signal_e = lit.signal_e,
+                             .length_px = lit.length_px,
+                             .star_known = lit.signal_e >= complete_e(line),
+                             .centroid = lit.centroid};
       compare_with_star(look, samples, optics, start, middle, end);
       return look;
     };
-    Look look = look_at(trail);
+    ExpectedDetection look = look_at(trail);
     const double blur_px = blur_.sigma_px(norm(line));
     const double sigma_px = std::sqrt(std::max(0.0, blur_px * blur_px - 1.0 / 12));  // no pixel
     look.snr = matched_filter_snr({trail.signal_e, trail.length_px, min_noise_e, sigma_px});
