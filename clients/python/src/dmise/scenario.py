@@ -666,6 +666,8 @@ class Sensor(TypedDict, total=False):
     """Effects of this sensor, after the scenario's."""
     seeing: Seeing
     """Turbulence, for a camera with `psf: diffraction`."""
+    malfunctions: Sequence[Malfunction]
+    """What goes wrong with its devices in `dmise observatory`; nothing else is changed by it. On the ground."""
     mask_deg: float
     """Lowest elevation for `dmise visible` [deg], on the ground. Default: 0."""
     extinction_mag_per_airmass: float
@@ -1572,6 +1574,23 @@ class Seeing(TypedDict, total=False):
     """Wind at the ground [m/s]. Default: 5."""
     jet_wind_m_per_s: float
     """Wind of the jet stream [m/s]. Default: 30."""
+
+
+class Malfunction(TypedDict, total=False):
+    """Something that goes wrong with the devices of a sensor while an observatory's software commands them. An exposure has
+    what holds when it begins."""
+
+    kind: Required[Literal["lost_link", "slow_download", "stuck_shutter", "stopped_mount", "wrong_gain"]]
+    """lost_link: its devices do not answer. slow_download: images come later. stuck_shutter: it stays closed. stopped_mount:
+    the axis stands still, and the telescope tells that it moves. wrong_gain: it is told wrong."""
+    at_s: Required[float]
+    """When it begins, after the start of the run [s]."""
+    for_s: Required[float]
+    """How long it lasts [s]."""
+    download_s: float
+    """From the end of an exposure to its image [s]; of slow_download, which needs it."""
+    gain_e_per_dn: float
+    """The gain that is told [e-/DN]; of wrong_gain, which needs it."""
 
 
 class ClockError(TypedDict, total=False):
