@@ -150,14 +150,17 @@ IndiRemark IndiDevices::remark(const std::string& message) const {
   return {observatory_.utc(observatory_.now()), message};
 }
 
-IndiNews IndiDevices::define(Device& device, Property& property) {
+void IndiDevices::define(Device& device, Property& property, std::vector<IndiNews>& news) {
   const IndiReading reading = property.of->read(call_of(device));
   const IndiVector vector = vector_of(device, *property.of, reading);
   if (!property.told) {
     property.told = vector;
     property.image = reading.image;  // what was taken before is not told
   }
-  return {device.name, vector.title.name, false, indi_definition(vector, remark())};
+  const char* name = vector.title.name;
+  news.push_back({device.name, name, false, indi_definition(vector, remark())});
+  if (property.of->updated_when_defined)
+    news.push_back({device.name, name, false, indi_update(vector, remark())});
 }
 
 std::vector<IndiNews> IndiDevices::defined(const GetIndiProperties& asked) {
@@ -166,7 +169,7 @@ std::vector<IndiNews> IndiDevices::defined(const GetIndiProperties& asked) {
     if (!asked.device.empty() && asked.device != device.name) continue;
     for (Property& property : device.properties)
       if (property.told && (asked.property.empty() || asked.property == property.of->title.name))
-        news.push_back(define(device, property));
+        define(device, property, news);
   }
   return news;
 }
@@ -178,7 +181,7 @@ void IndiDevices::define_or_delete(Device& device, std::vector<IndiNews>& news) 
     if (is_there == property.told.has_value()) continue;
     const char* name = property.of->title.name;
     if (is_there) {
-      news.push_back(define(device, property));
+      define(device, property, news);
       continue;
     }
     property.told.reset();

@@ -67,7 +67,8 @@ struct IndiProperty {
   IndiReading (*read)(const IndiCall&);
   void (*write)(const IndiCall&, const IndiGiven&) = nullptr;  // null: it cannot be set
   bool (*exists)(const IndiCall&) = nullptr;                   // null: whenever it is connected
-  bool told_when_asked = false;  // changes of its values alone are not told
+  bool told_when_asked = false;       // changes of its values alone are not told
+  bool updated_when_defined = false;  // an update with the same values follows its definition
 };
 
 // The properties of a device; those that all devices have are in the first.
@@ -132,7 +133,7 @@ class IndiDevices {
   Device& device_named(const std::string& name);
   Property& property_named(Device& device, const std::string& name);
   std::string write(Device& device, const IndiProperty& property, const NewIndiVector& given);
-  IndiNews define(Device& device, Property& property);
+  void define(Device& device, Property& property, std::vector<IndiNews>& news);
   void define_or_delete(Device& device, std::vector<IndiNews>& news);
   void tell_image(Device& device, const IndiVector& vector, const TakenImage& image,
                   std::vector<IndiNews>& news);

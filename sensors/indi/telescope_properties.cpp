@@ -251,7 +251,8 @@ IndiReading site(const Call& c) {
   const double east_deg = std::fmod(site.longitude_deg + 360.0, 360.0);
   return {{number_item("LAT", "Lat (dd:mm:ss)", site.latitude_deg, degrees),
            number_item("LONG", "Lon (dd:mm:ss)", east_deg, {"%012.8m", 0.0, 360.0}),
-           number_item("ELEV", "Elevation (m)", site.height_m, {"%g", -200.0, 10000.0})}};
+           number_item("ELEV", "Elevation (m)", site.height_m, {"%g", -200.0, 10000.0})},
+          IndiState::ok};
 }
 
 IndiReading time_utc(const Call& c) {
@@ -319,10 +320,16 @@ std::vector<IndiProperty> motions() {
   };
 }
 
+/// KStars takes the place and time of its mount from updates, not from definitions.
 std::vector<IndiProperty> facts() {
   return {
-      {numbers("GEOGRAPHIC_COORD", "Scope Location", site_group), site},
-      {texts("TIME_UTC", "UTC", site_group), time_utc, nullptr, nullptr, true},
+      {.title = numbers("GEOGRAPHIC_COORD", "Scope Location", site_group),
+       .read = site,
+       .updated_when_defined = true},
+      {.title = texts("TIME_UTC", "UTC", site_group),
+       .read = time_utc,
+       .told_when_asked = true,
+       .updated_when_defined = true},
       {numbers("TELESCOPE_INFO", "Scope Properties", options_group), optics},
   };
 }

@@ -187,6 +187,21 @@ TEST(IndiDevices, FocuserWheelAndCoverAreBusyWhileTheyMove) {
   EXPECT_TRUE(bench.observatory.of(0, [](const auto& d) { return d.wheel.goal() == 1; }));
 }
 
+// KStars 3.6.2 with *Mount* as the source of time and place (ISD::GenericDevice::processText).
+TEST(IndiDevices, PlaceAndTimeAreUpdatedWhenTheyAreDefined) {
+  Bench bench("indi-place");
+  bench.set(telescope, IndiKind::toggle, "CONNECTION", {{"DISCONNECT", "On"}});
+  const auto connected =
+      bench.devices.set({IndiKind::toggle, telescope, "CONNECTION", {{"CONNECT", "On"}}});
+  for (const auto& news : {connected, bench.devices.defined({telescope, ""})}) {
+    for (const char* update : {"<setNumberVector device=\"eye telescope\" "
+                               "name=\"GEOGRAPHIC_COORD\" state=\"Ok\"",
+                               "<setTextVector device=\"eye telescope\" "
+                               "name=\"TIME_UTC\" state=\"Ok\""})
+      EXPECT_THAT(told(news), HasSubstr(update));
+  }
+}
+
 TEST(IndiDevices, WeatherIsTheScenarios) {
   Bench bench("indi-weather");
   bench.set("eye weather", IndiKind::toggle, "CONNECTION", {{"CONNECT", "On"}});
