@@ -14,10 +14,10 @@
 #include "core/sky/scattered_moonlight.h"
 #include "core/sky/stars/star_counts.h"
 #include "sensors/light/disc_layer.h"
-#include "sensors/sky/sky_light.h"
-#include "sensors/sky/thermal_optics.h"
 #include "sensors/scene/limb_layer.h"
 #include "sensors/scene/throughput.h"
+#include "sensors/sky/sky_light.h"
+#include "sensors/sky/thermal_optics.h"
 
 namespace dmise {
 namespace {

@@ -193,8 +193,8 @@ void StarFacts::add_stars(const View& view, PlanFacts& f) const {
 }
 
 /// A star may be as bright in the band as any of its magnitude.
-void StarFacts::add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis, double seen_rad, double electrons,
-                              PlanFacts& f) const {
+void StarFacts::add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis,
+                              double seen_rad, double electrons, PlanFacts& f) const {
   double brightest_colour = 0.0;  // of synthetic ones
   for (const double bv : {least_bv, double(default_star_bv), greatest_bv})
     brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
@@ -202,7 +202,8 @@ void StarFacts::add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& 
     const double limit = std::max(double(m), synthetic.from_v_mag());
     if (limit >= synthetic.to_v_mag()) break;
     const double left_e = electrons * brightest_colour * light_of_magnitude(limit);
-    if (!to_frame_limit() || SyntheticBackground::is_seen(left_e, f)) f.synthetic_left_e[m] = left_e;
+    if (!to_frame_limit() || SyntheticBackground::is_seen(left_e, f))
+      f.synthetic_left_e[m] = left_e;
   }
   // In wide fields as all of the sky has them, else as this part of it has.
   const bool is_wide = seen_rad >= widest_counted_rad;
@@ -211,9 +212,8 @@ void StarFacts::add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& 
   for (std::size_t m = 0; m < star_limits; ++m) {
     const double limit = std::min(double(m), synthetic.to_v_mag());
     if (limit > synthetic.from_v_mag() && double(m) < synthetic.to_v_mag() + 1.0)
-      made = is_wide
-                 ? share * (stars_of_all_sky(limit) - stars_of_all_sky(synthetic.from_v_mag()))
-                 : synthetic.expected_around(axis, seen_rad, limit);
+      made = is_wide ? share * (stars_of_all_sky(limit) - stars_of_all_sky(synthetic.from_v_mag()))
+                     : synthetic.expected_around(axis, seen_rad, limit);
     f.synthetic_brighter[m] = made;
   }
 }
