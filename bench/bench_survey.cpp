@@ -20,8 +20,8 @@
 #include "core/config/make_clock.h"
 #include "core/config/yaml/search_path.h"
 #include "orbit-node/load_objects.h"
-#include "sensors/frame/make_sensor.h"
 #include "sensors/accuracy/rendered_check.h"
+#include "sensors/frame/make_sensor.h"
 #include "sensors/survey/survey_summary.h"
 
 namespace dmise {

@@ -15,8 +15,8 @@
 #include "sensors/objects/objects_in_field.h"
 #include "sensors/planning/exposure_planner.h"
 #include "sensors/scene/seen_planet.h"
-#include "sensors/sky/field_stars.h"
 #include "sensors/scene/throughput.h"
+#include "sensors/sky/field_stars.h"
 
 namespace dmise {
 

@@ -28,8 +28,8 @@ class StarFacts {
  private:
   void add_trails(const View& view, PlanFacts& facts) const;
   void add_stars(const View& view, PlanFacts& facts) const;
-  void add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis, double seen_rad, double electrons,
-                     PlanFacts& facts) const;
+  void add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis, double seen_rad,
+                     double electrons, PlanFacts& facts) const;
 
   /// Stars by whole V magnitudes: those not fainter, and the light of the brightest beyond
   /// [photons/s/m2]; the brightest of all, and how many were looked at.
