@@ -1,12 +1,13 @@
 """Clients of an observatory in real time: each slews its telescope of 1 megapixel, exposes, takes the image and solves it.
 
     build/observatory-venv/bin/python bench/observatory_clients.py [--clients 20] [--frames 100] [--exposure 10] [--cores 2]
-        [--solve-each 1] [--binary build/release/bin/dmise] [--out DIRECTORY]
+        [--solve-each 1] [--blind] [--binary build/release/bin/dmise] [--out DIRECTORY]
 
-Every client is a process of alpyca's. It writes what it was sent as a FITS file of its own, without a WCS, and `dmise solve --blind`
-must find, from Tycho-2 and the width of the field alone, the place that the telescope was sent to within 5 arcsec. Printed are
-the time from the end of an exposure to its whole image at the client, what was late (over 0.5 s) or not solved, the processor
-time, and whether `--commands` makes the night again byte for byte. Stars are Tycho-2's: `dmise catalogue fetch tycho2`.
+Every client is a process of alpyca's. It writes what it was sent as a FITS file of its own with the cards that such programs write
+(where the telescope says that it is, focal length, size of pixels, time), without a WCS, and `dmise solve` must find the place that
+the telescope was sent to within 5 arcsec; with --blind from the width of the field alone. Printed are the time from the end of an
+exposure to its whole image at the client, what was late (over 0.5 s) or not solved, the processor time, and whether `--commands`
+makes the night again byte for byte. Stars are Tycho-2's: `dmise catalogue fetch tycho2`.
 """
 
 import argparse
@@ -57,10 +58,11 @@ SENSOR = """\
 """
 
 
-def write_fits(path, image):
-    """A FITS file of unsigned 16-bit counts [y][x], without anything that a solver could take from it."""
+def write_fits(path, image, keys):
+    """A FITS file of unsigned 16-bit counts [y][x] with these cards."""
     cards = [f"SIMPLE  = {'T':>20}", f"BITPIX  = {16:>20}", f"NAXIS   = {2:>20}", f"NAXIS1  = {image.shape[1]:>20}",
-             f"NAXIS2  = {image.shape[0]:>20}", f"BZERO   = {32768:>20}", f"BSCALE  = {1:>20}", "END"]
+             f"NAXIS2  = {image.shape[0]:>20}", f"BZERO   = {32768:>20}", f"BSCALE  = {1:>20}",
+             *(f"{key:8}= " + (f"'{value}'" if isinstance(value, str) else f"{value:>20.10g}") for key, value in keys.items()), "END"]
     header = "".join(card.ljust(80) for card in cards)
     data = (image.astype(numpy.int32) - 32768).astype(">i2").tobytes()
     path.write_bytes(header.ljust(-(-len(header) // 2880) * 2880).encode() + data + b"\0" * (-len(data) % 2880))
@@ -77,11 +79,11 @@ def apart_arcsec(a, b):
     return math.degrees(2 * math.asin(min(1.0, math.sqrt(half)))) * 3600
 
 
-def solved(binary, path, place):
+def solved(binary, path, place, blind):
     """Whether a frame is solved where the telescope was sent; and how long that took."""
     begin = time.monotonic()
-    done = subprocess.run(["nice", binary, "solve", path, "--blind", "--field", "1.27", "--catalogue", "tycho2", "--json"],
-                          capture_output=True, text=True)
+    done = subprocess.run(["nice", binary, "solve", path, "--catalogue", "tycho2", "--json",
+                           *(["--blind", "--field", "1.27"] if blind else [])], capture_output=True, text=True)
     took_s = time.monotonic() - begin
     if done.returncode:
         return False, took_s, done.stderr.strip().splitlines()[-1:]
@@ -101,6 +103,7 @@ def observe(number, address, options, directory, results):
         place = ((telescope.SiderealTime - hour_angle_h) % 24 * 15, draw.uniform(0, 60))
         telescope.SlewToCoordinatesAsync(place[0] / 15, place[1])
         until(lambda: not telescope.Slewing, 0.2)
+        there = telescope.RightAscension * 15, telescope.Declination
         begin = time.monotonic()
         camera.StartExposure(options.exposure, True)
         time.sleep(max(0.0, begin + options.exposure - time.monotonic()))
@@ -111,8 +114,10 @@ def observe(number, address, options, directory, results):
         result = {"client": number, "frame": frame, "late_s": late_s, "ready_s": ready_s}
         if frame % options.solve_each == 0:
             path = directory / f"client-{number:02d}.fits"
-            write_fits(path, numpy.array(raw, dtype=numpy.uint16).reshape(1024, 1024).T)
-            result["solved"], result["solve_s"], result["how"] = solved(options.binary, path, place)
+            keys = {"RA": there[0], "DEC": there[1], "FOCALLEN": 600.0, "XPIXSZ": 13.0, "YPIXSZ": 13.0,
+                    "DATE-OBS": camera.LastExposureStartTime, "EXPTIME": options.exposure}
+            write_fits(path, numpy.array(raw, dtype=numpy.uint16).reshape(1024, 1024).T, {} if options.blind else keys)
+            result["solved"], result["solve_s"], result["how"] = solved(options.binary, path, place, options.blind)
         results.put(result)
 
 
@@ -172,6 +177,7 @@ def main():
     parser.add_argument("--exposure", type=float, default=10.0)
     parser.add_argument("--cores", type=int, default=2)
     parser.add_argument("--solve-each", type=int, default=1, help="solves every so manieth frame of a client")
+    parser.add_argument("--blind", action="store_true", help="solves without the place that the telescope told")
     parser.add_argument("--out", type=pathlib.Path)
     options = parser.parse_args()
     os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:options.cores])

@@ -30,8 +30,8 @@ namespace {
 
 struct ObservatoryOptions {
   std::string scenario, out, commands, listen = "127.0.0.1:11111", tokens;
-  std::string indi;                   // empty: not served
-  std::string run, keys;              // a run whose time the night has; empty: the clock of this machine
+  std::string indi;       // empty: not served
+  std::string run, keys;  // a run whose time the night has; empty: the clock of this machine
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   ObservatorySettings devices;
   double rate = 1.0;
@@ -200,8 +200,9 @@ void observe(const ObservatoryOptions& options) {
   take_directory(directory, options.force);
   stop_signal();
   const auto start = std::chrono::steady_clock::now();
-  RunOutcome outcome = doors ? serve(options, std::move(doors), run.get(), scenario, scene, directory)
-                             : replay(options, night, scenario, scene, directory);
+  RunOutcome outcome = doors
+                           ? serve(options, std::move(doors), run.get(), scenario, scene, directory)
+                           : replay(options, night, scenario, scene, directory);
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   finish_run(directory, scenario, outcome);
 }
@@ -217,8 +218,9 @@ void add_observatory_command(CLI::App& app) {
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_option("--out", options->out, "directory of the products")
       ->default_val("out/observatory");
-  auto* commands = command->add_option("--commands", options->commands,
-                      "night.jsonl of an observatory: makes its products again, without a server");
+  auto* commands = command->add_option(
+      "--commands", options->commands,
+      "night.jsonl of an observatory: makes its products again, without a server");
   command
       ->add_option("--listen", options->listen,
                    "IP address and port; port 0: any free port; addresses other than loopback need "
@@ -250,7 +252,8 @@ void add_observatory_command(CLI::App& app) {
                                   "address of the time-master of a paced run that begins when the "
                                   "scenario does: the night has its time, and ends with it");
   run->excludes(rate)->excludes(commands);
-  command->add_option("--keys", options->keys, "directory with operator.key, for --run")->needs(run);
+  command->add_option("--keys", options->keys, "directory with operator.key, for --run")
+      ->needs(run);
   add_number_option(*command, "--slew-rate", options->devices.slew_rate_deg_per_s, 0.01, 100.0,
                     "of the telescopes [deg/s]");
   add_number_option(*command, "--settle", options->devices.settle_s, 0.0, 100.0,

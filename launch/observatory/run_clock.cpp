@@ -7,7 +7,8 @@
 namespace dmise {
 namespace {
 
-constexpr double patience_s = 5.0;    // for the first answer, and without one until the run counts as lost
+constexpr double patience_s =
+    5.0;  // for the first answer, and without one until the run counts as lost
 constexpr auto interval = std::chrono::milliseconds(20);  // between two questions
 
 double seconds_now() {
@@ -29,8 +30,9 @@ RunClock::RunClock(const std::string& master, const Security& security)
   const RunStatus status = ask_master(master_, patience_s, security_);
   if (is_over(status)) throw ConfigError("--run: the run at " + master_ + " is over");
   if (status.pace <= 0.0)
-    throw ConfigError("--run: the run at " + master_ +
-                      " goes as fast as it can; network: {real_time: 1} or `dmise clock pace` paces it");
+    throw ConfigError(
+        "--run: the run at " + master_ +
+        " goes as fast as it can; network: {real_time: 1} or `dmise clock pace` paces it");
   start_utc_ = status.start_utc;
   offset_s_ = -status.pace * seconds_now();
   take(status);
@@ -82,7 +84,8 @@ void RunClock::follow() {
 
 SimTime RunClock::now() const {
   const std::lock_guard lock(mutex_);
-  const double paced_s = std::clamp(offset_s_ + pace_ * seconds_now(), granted_s_, granted_s_ + tick_s_);
+  const double paced_s =
+      std::clamp(offset_s_ + pace_ * seconds_now(), granted_s_, granted_s_ + tick_s_);
   latest_s_ = std::max(latest_s_, paced_s);
   return sim_seconds(latest_s_);
 }

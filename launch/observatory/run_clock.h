@@ -10,13 +10,13 @@
 
 namespace dmise {
 
-/// Simulation time of a paced run: between two ticks it passes at the run's pace, and it waits where
-/// the run waits. It is behind the run by the time between two questions at most, and never ahead of
-/// its next tick. Its beginning is that of the run's scenario.
+/// Simulation time of a paced run: between two ticks it passes at the run's pace, and it waits
+/// where the run waits. It is behind the run by the time between two questions at most, and never
+/// ahead of its next tick. Its beginning is that of the run's scenario.
 class RunClock : public ObservatoryClock {
  public:
-  /// `master`: address of the run's time-master. Throws `Error` if that does not answer, `ConfigError`
-  /// if the run is over or is not paced.
+  /// `master`: address of the run's time-master. Throws `Error` if that does not answer,
+  /// `ConfigError` if the run is over or is not paced.
   RunClock(const std::string& master, const Security& security);
   ~RunClock() override;
   RunClock(const RunClock&) = delete;
@@ -41,9 +41,9 @@ class RunClock : public ObservatoryClock {
   bool stops_ = false;
   std::string ended_;
   double pace_ = 0.0, tick_s_ = 0.0;
-  double granted_s_ = 0.0;           // time of the tick that the run may process
-  double offset_s_ = 0.0;            // of simulation time at the pace's zero
-  mutable double latest_s_ = 0.0;    // that was told: time does not go back
+  double granted_s_ = 0.0;         // time of the tick that the run may process
+  double offset_s_ = 0.0;          // of simulation time at the pace's zero
+  mutable double latest_s_ = 0.0;  // that was told: time does not go back
   std::thread thread_;
 };
 

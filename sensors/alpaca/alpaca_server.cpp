@@ -41,8 +41,8 @@ AlpacaServer::~AlpacaServer() = default;
 
 void AlpacaServer::serve(Observatory& observatory) {
   Work& work = *work_;
-  work.hub.emplace(
-      AlpacaHub{work.options, work.connections, observatory, AlpacaDevices(observatory, work.options.connected)});
+  work.hub.emplace(AlpacaHub{work.options, work.connections, observatory,
+                             AlpacaDevices(observatory, work.options.connected)});
   work.listener.start(
       [&hub = *work.hub](tcp::socket socket) { serve_alpaca(hub, std::move(socket)); });
 }

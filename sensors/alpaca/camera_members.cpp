@@ -92,8 +92,7 @@ std::vector<Member> camera_facts() {
       {"ispulseguiding", not_there},
       {"gains",
        [](const Call& c) {
-         return answer_of(
-             std::vector<std::string>{formatted("%g e-/DN", told_gain(c))});
+         return answer_of(std::vector<std::string>{formatted("%g e-/DN", told_gain(c))});
        }},
       {"gain", [](const Call&) { return answer_of(0); },
        [](const Call& c) { return choose_first(c, "Gain"); }},

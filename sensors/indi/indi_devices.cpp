@@ -211,7 +211,8 @@ std::string IndiDevices::write(Device& device, const IndiProperty& property,
   const IndiCall call = call_of(device);
   IndiState& after = device.session.after[property.title.name];
   try {
-    if (!observatory_.has_link(device.station)) refuse("the device does not answer: its link is lost");
+    if (!observatory_.has_link(device.station))
+      refuse("the device does not answer: its link is lost");
     property.write(call, given_to(vector_of(device, property, property.read(call)), given));
     after = IndiState::ok;
     return {};

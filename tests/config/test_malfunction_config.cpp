@@ -8,7 +8,7 @@ namespace dmise {
 namespace {
 
 std::vector<Malfunction> read(const std::string& text) {
-  return read_malfunctions(YamlValue::parse(text, "s.yaml"));
+  return read_malfunctions(*YamlMap(YamlValue::parse("m: " + text, "s.yaml")).find("m"));
 }
 std::string refusal(const std::string& text) {
   try {
@@ -26,7 +26,9 @@ TEST(MalfunctionConfig, SaysWhatActsWhen) {
   ASSERT_EQ(malfunctions.size(), 3u);
   EXPECT_EQ(malfunctions[1].download_s, 8.0);
   EXPECT_EQ(malfunctions[2].gain_e_per_dn, 2.5);
-  const auto lost = [&](double t_s) { return acting(malfunctions, MalfunctionKind::lost_link, t_s); };
+  const auto lost = [&](double t_s) {
+    return acting(malfunctions, MalfunctionKind::lost_link, t_s);
+  };
   EXPECT_EQ(lost(9.9), nullptr);
   EXPECT_EQ(lost(10.0), &malfunctions[0]);
   EXPECT_EQ(lost(15.0), nullptr);
@@ -34,7 +36,7 @@ TEST(MalfunctionConfig, SaysWhatActsWhen) {
 }
 
 TEST(MalfunctionConfig, RefusesBadValuesInOneLine) {
-  EXPECT_EQ(refusal("[{kind: slow_download, at_s: 0, for_s: 1}]").find("s.yaml:1:2: "), 0u);
+  EXPECT_EQ(refusal("[{kind: slow_download, at_s: 0, for_s: 1}]").find("s.yaml:1:5: "), 0u);
   EXPECT_NE(refusal("[{kind: slow_download, at_s: 0, for_s: 1}]").find("download_s"),
             std::string::npos);
   EXPECT_NE(refusal("[{kind: lost_link, at_s: 0, for_s: 1, download_s: 2}]")

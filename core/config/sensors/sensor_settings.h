@@ -160,9 +160,9 @@ struct SensorConfig {
     bool truth = false;             // it is told the states of all objects
     double half_angle_deg = 180.0;  // of a cone about its boresight that contains its field
   };
-  std::optional<Observing> observing = {};  // none: a camera does
+  std::optional<Observing> observing = {};     // none: a camera does
   std::vector<Malfunction> malfunctions = {};  // of its devices in an observatory
-  RecordedPlans recorded_plans = {};        // of a run that is replayed; empty: frames are planned
+  RecordedPlans recorded_plans = {};  // of a run that is replayed; empty: frames are planned
 
   bool is_camera() const { return !observing; }
   /// Of `nodes`, whose program its process starts; empty: none.
