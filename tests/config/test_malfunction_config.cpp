@@ -1,8 +1,8 @@
-#include "core/config/sensors/malfunction_config.h"
-
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/config/sensors/instrument_config.h"
+#include "core/config/yaml/yaml_reader.h"
 
 namespace dmise {
 namespace {

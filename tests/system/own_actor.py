@@ -71,7 +71,7 @@ def write_oem(path):
 
 def dmise(binary, *arguments, code=0):
     """Runs a command to its end; returns what it says on stderr."""
-    done = subprocess.run([binary, *map(str, arguments)], capture_output=True, text=True, timeout=PATIENCE_S)
+    done = subprocess.run([binary, *map(str, arguments)], capture_output=True, text=True, timeout=2 * PATIENCE_S)
     check(done.returncode == code, f"dmise {arguments[0]}: code {done.returncode} {done.stderr[-500:] if done.returncode != code else ''}")
     return done.stderr
 

@@ -5,6 +5,7 @@
 namespace dmise {
 
 class YamlMap;
+class YamlValue;
 class JsonWriter;
 
 /// Reads `clock_error` and `pointing_error` of a sensor.
@@ -22,5 +23,8 @@ std::vector<double> numbers_of(const InstrumentParameter& parameter, const Instr
 
 /// The keys of these effects, for the section of a sensor.
 std::vector<Key> instrument_keys();
+
+const Section& malfunction_section();
+std::vector<Malfunction> read_malfunctions(const YamlValue& list);
 
 }  // namespace dmise

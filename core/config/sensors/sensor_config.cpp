@@ -12,7 +12,6 @@
 #include "core/config/sensors/effects_config.h"
 #include "core/config/sensors/exclusion_config.h"
 #include "core/config/sensors/instrument_config.h"
-#include "core/config/sensors/malfunction_config.h"
 #include "core/config/sensors/optics_config.h"
 #include "core/config/sensors/pointing_config.h"
 #include "core/config/sensors/thermal_optics_config.h"
