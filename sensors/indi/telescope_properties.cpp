@@ -110,7 +110,7 @@ void set_track_rate(const Call& c, const Given& given) {
   c.session.custom_rate = true;
 }
 
-constexpr std::size_t max_element_set_bytes = 2000, max_time_bytes = 40;
+constexpr std::size_t max_time_bytes = 40;
 
 IndiReading element_set(const Call& c) {
   return {{text_item("TLE", "TLE", c.session.element_set)}};
