@@ -30,8 +30,9 @@ namespace {
 
 struct ObservatoryOptions {
   std::string scenario, out, commands, listen = "127.0.0.1:11111", tokens;
-  std::string indi;       // empty: not served
-  std::string run, keys;  // a run whose time the night has; empty: the clock of this machine
+  std::string indi;                // empty: not served
+  std::optional<std::string> run;  // whose time the night has; none: the clock of this machine
+  std::string keys;
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   ObservatorySettings devices;
   double rate = 1.0;
@@ -121,8 +122,8 @@ void take_directory(RunDirectory& directory, bool force) {
 
 /// The clock of the run that the options name; null without.
 std::unique_ptr<RunClock> run_clock(const ObservatoryOptions& options, const Scenario& scenario) {
-  if (options.run.empty()) return nullptr;
-  auto clock = std::make_unique<RunClock>(options.run, Security(options.keys, operator_name));
+  if (!options.run) return nullptr;
+  auto clock = std::make_unique<RunClock>(*options.run, Security(options.keys, operator_name));
   const std::string start = format_utc(parse_utc(scenario.start_utc), 6);
   if (!clock->start_utc().empty() && clock->start_utc() != start)
     throw ConfigError("--run: the run begins at " + printable(clock->start_utc()) + ", " +

@@ -27,6 +27,7 @@ double paced_offset_s(double offset_s, double pace, double at_s, double granted_
 
 RunClock::RunClock(const std::string& master, const Security& security)
     : master_(master), security_(security) {
+  if (master_.empty()) throw ConfigError("--run: the address of a time-master is missing");
   const RunStatus status = ask_master(master_, patience_s, security_);
   if (is_over(status)) throw ConfigError("--run: the run at " + master_ + " is over");
   if (status.pace <= 0.0)

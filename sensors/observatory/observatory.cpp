@@ -96,7 +96,8 @@ struct Observatory::Station {
   /// whatever moves the telescope.
   std::optional<CommandedPointing> stopped_pointing(SimTime now) {
     const Malfunction* stop = acting(MalfunctionKind::stopped_mount, now);
-    if (stop && stop != stopped)
+    const bool goes_on = stopped && stop && stop->at_s <= stopped->at_s + stopped->for_s;
+    if (stop && !goes_on)
       stopped_at = telescope.standing_at(telescope.axis(sim_seconds(stop->at_s)));
     stopped = stop;
     return stop ? std::optional(stopped_at) : std::nullopt;

@@ -94,6 +94,8 @@ TEST(RunClock, WaitsWhereTheRunIsPaused) {
   EXPECT_TRUE(comes(clock, sim_seconds(20.0)));
 }
 
+TEST(RunClock, RefusesAnEmptyAddress) { EXPECT_THROW(RunClock("", {}), ConfigError); }
+
 TEST(RunClock, RefusesARunWithoutAPace) {
   PacedRun run(0.0);
   try {

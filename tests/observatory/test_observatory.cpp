@@ -172,7 +172,8 @@ TEST(Observatory, WhatMovesWaitsForTheShutterAndTheShutterForIt) {
 TEST(Observatory, AStoppedMountAndAStuckShutterAreInTheFramesAndTheJournal) {
   Night night("observatory-malfunctions",
               "    malfunctions:\n"
-              "      - {kind: stopped_mount, at_s: 100, for_s: 100}\n"
+              "      - {kind: stopped_mount, at_s: 100, for_s: 60}\n"
+              "      - {kind: stopped_mount, at_s: 150, for_s: 50}\n"
               "      - {kind: stuck_shutter, at_s: 300, for_s: 10}\n");
   int frames = 0;
   const auto exposed_at = [&](double t_s) {

@@ -37,10 +37,10 @@ def place(track, site, utc):
 def newest(subscription):
     """The last state of an object that is in no catalogue, of those that have come; waits for the first."""
     for message in subscription.messages():
-        tracks = [t for t in subscription.records_of(message) if not t.catalogue_number and t.status != "lost"]
+        tracks = subscription.records_of(message)
         while (message := subscription.receive(0.0)) is not None:
-            tracks += [t for t in subscription.records_of(message) if not t.catalogue_number and t.status != "lost"]
-        if tracks:
+            tracks += subscription.records_of(message)
+        if tracks := [t for t in tracks if not t.catalogue_number and t.status != "lost"]:
             yield max(tracks, key=lambda t: (t.time_ns, t.detections))
 
 
