@@ -74,10 +74,10 @@ std::vector<std::size_t> overfull_columns(float well, const ElectronImage& elect
 
 double Blooming::cost_s(int level, const PlanFacts& f) { return level * 1e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> Blooming::parameters() {
-  static constexpr DetectorParameter table[] = {{"blooming", "BLOOMING",
-                                                 "charge above the full well runs along columns",
-                                                 &Blooming::blooming}};
+std::span<const ParameterOf<Blooming>> Blooming::parameters() {
+  static constexpr ParameterOf<Blooming> table[] = {
+      {"blooming", "BLOOMING", "charge above the full well runs along columns",
+       &Blooming::blooming}};
   return table;
 }
 

@@ -12,7 +12,7 @@ struct Blooming {
   bool blooming = false;
   bool operator==(const Blooming&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<Blooming>> parameters();
   void switch_off() { blooming = false; }
   bool applies(const Detector& detector) const;
   void apply(const ExposureFacts& exposed, const WholeImage& image) const;

@@ -64,8 +64,8 @@ void crossing(const Rows& rows, bool down, int row, int first, int count, double
 
 double BrighterFatter::cost_s(int level, const PlanFacts& f) { return level * 30e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> BrighterFatter::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<BrighterFatter>> BrighterFatter::parameters() {
+  static constexpr ParameterOf<BrighterFatter> table[] = {
       {"brighter_fatter_per_e", "BFATTER", "[px/e-] boundaries move by a pixel's own charge",
        &BrighterFatter::brighter_fatter_per_e, 0.0, 1e-4}};
   return table;

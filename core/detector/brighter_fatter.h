@@ -16,7 +16,7 @@ struct BrighterFatter {
   double brighter_fatter_per_e = 0.0;  // of a pixel, by its own charge; 0: none
   bool operator==(const BrighterFatter&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<BrighterFatter>> parameters();
   static std::optional<DetectorFault> fault(const Detector& detector);
   void switch_off() { brighter_fatter_per_e = 0.0; }
   bool applies(const Detector&) const { return brighter_fatter_per_e > 0.0; }

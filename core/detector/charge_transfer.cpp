@@ -54,8 +54,8 @@ class Transfers {
 
 double ChargeTransfer::cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> ChargeTransfer::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<ChargeTransfer>> ChargeTransfer::parameters() {
+  static constexpr ParameterOf<ChargeTransfer> table[] = {
       {"parallel_cti", "CTIPAR", "charge left behind a transfer along columns",
        &ChargeTransfer::parallel_cti, 0.0, 0.01},
       {"serial_cti", "CTISER", "charge left behind a transfer along rows",

@@ -16,7 +16,7 @@ struct ChargeTransfer {
   double cti_release_px = 0.0;                  // time constant [transfers]; 0: in the next one
   bool operator==(const ChargeTransfer&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<ChargeTransfer>> parameters();
   void switch_off() { parallel_cti = serial_cti = 0.0; }
   bool applies(const Detector&) const { return parallel_cti > 0.0 || serial_cti > 0.0; }
   void apply(const ExposureFacts& exposed, const WholeImage& image) const;

@@ -26,8 +26,8 @@ void add_crossings(double from, double extent, std::vector<double>& cuts) {
 
 double CosmicRays::cost_s(int level, const PlanFacts& f) { return level * 0.005e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> CosmicRays::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<CosmicRays>> CosmicRays::parameters() {
+  static constexpr ParameterOf<CosmicRays> table[] = {
       {"cosmic_rays_per_px_s", "CRRATE", "[1/s/px] hits by charged particles",
        &CosmicRays::cosmic_rays_per_px_s, 0.0, 1e-3},
       {"cosmic_ray_e_per_px", "CRCHARGE", "[e-] left in a pixel pitch of track",

@@ -26,7 +26,7 @@ struct CosmicRays {
   double cosmic_ray_depth_px = 1.0;     // depth of the sensitive layer in pixel pitches
   bool operator==(const CosmicRays&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<CosmicRays>> parameters();
   void switch_off() { cosmic_rays_per_px_s = 0.0; }
   bool applies(const Detector&) const {
     return cosmic_rays_per_px_s > 0.0 && cosmic_ray_e_per_px > 0.0;

@@ -20,8 +20,8 @@ double DarkCurrent::thermal_factor() const {
                                : 1.0;
 }
 
-std::span<const DetectorParameter> DarkCurrent::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<DarkCurrent>> DarkCurrent::parameters() {
+  static constexpr ParameterOf<DarkCurrent> table[] = {
       {"dark_e_per_s", "", "[e-/s] dark current at dark_reference_c", &DarkCurrent::dark_e_per_s,
        0.0, max_e_per_s},
       {"dark_reference_c", "DARKREFT", "[deg C] where dark currents are known",

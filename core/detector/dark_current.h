@@ -15,7 +15,7 @@ struct DarkCurrent {
   double dark_doubling_k = 0.0;   // temperature rise that doubles dark current; 0: constant
   bool operator==(const DarkCurrent&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<DarkCurrent>> parameters();
   static std::optional<DetectorFault> fault(const Detector& detector);
   void switch_off() { dark_e_per_s = 0.0; }
   bool applies(const Detector&) const { return dark_e_per_s > 0.0; }

@@ -49,8 +49,7 @@ constexpr DetectorParameter quantum_efficiency{"quantum_efficiency",
 std::vector<DetectorParameter> all_parameters() {
   std::vector<DetectorParameter> all{quantum_efficiency};
   DetectorEffects::for_each([&]<class Effect>() {
-    const auto own = Effect::parameters();
-    all.insert(all.end(), own.begin(), own.end());
+    for (const auto& own : Effect::parameters()) all.push_back(own.template in<Detector>());
   });
   std::ranges::stable_sort(all, {}, place_in_headers);
   return all;
@@ -68,19 +67,6 @@ std::string complaint(const DetectorParameter& p, double number) {
 }
 
 }  // namespace
-
-double DetectorParameter::number_of(const Detector& detector) const {
-  return std::visit([&](auto member) { return double(detector.*member); }, value);
-}
-
-void DetectorParameter::set(Detector& detector, double number) const {
-  std::visit(
-      [&](auto member) {
-        auto& field = detector.*member;
-        field = static_cast<std::remove_reference_t<decltype(field)>>(number);
-      },
-      value);
-}
 
 std::span<const DetectorParameter> detector_parameters() {
   static const std::vector<DetectorParameter> all = all_parameters();

@@ -12,10 +12,10 @@ constexpr std::size_t rows_a_sum = 16;
 
 double FrameTransfer::cost_s(int level, const PlanFacts& f) { return level * 1.5e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> FrameTransfer::parameters() {
-  static constexpr DetectorParameter table[] = {{"frame_transfer_s", "FTRANSF",
-                                                 "[s] shift of the image under the mask",
-                                                 &FrameTransfer::frame_transfer_s, 0.0, 100.0}};
+std::span<const ParameterOf<FrameTransfer>> FrameTransfer::parameters() {
+  static constexpr ParameterOf<FrameTransfer> table[] = {
+      {"frame_transfer_s", "FTRANSF", "[s] shift of the image under the mask",
+       &FrameTransfer::frame_transfer_s, 0.0, 100.0}};
   return table;
 }
 

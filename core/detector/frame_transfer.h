@@ -16,7 +16,7 @@ struct FrameTransfer {
   double frame_transfer_s = 0.0;  // time to shift all rows; 0: a shutter, no smear
   bool operator==(const FrameTransfer&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<FrameTransfer>> parameters();
   void switch_off() { frame_transfer_s = 0.0; }
   bool applies(const Detector&) const { return frame_transfer_s > 0.0; }
   /// Light of the rows before every `rows_a_sum`th, by column [e-].

@@ -12,8 +12,8 @@ ErrorBound FullWell::error(int, const PlanFacts& f) const {
 
 double FullWell::cost_s(int level, const PlanFacts& f) { return level * 0.1e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> FullWell::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<FullWell>> FullWell::parameters() {
+  static constexpr ParameterOf<FullWell> table[] = {
       {"full_well_e", "", "[e-] that a pixel holds", &FullWell::full_well_e, 0.0, 1e9, true, true}};
   return table;
 }

@@ -12,7 +12,7 @@ struct FullWell {
   bool well_is_limited = true;
   bool operator==(const FullWell&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<FullWell>> parameters();
   void switch_off() { well_is_limited = false; }
   bool applies(const Detector& detector) const;
   void apply(const ExposureFacts& exposed, Piece& piece) const;

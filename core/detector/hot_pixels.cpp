@@ -11,8 +11,8 @@ namespace dmise {
 
 double HotPixels::cost_s(int level, const PlanFacts& f) { return level * 0.55e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> HotPixels::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<HotPixels>> HotPixels::parameters() {
+  static constexpr ParameterOf<HotPixels> table[] = {
       {"hot_pixel_fraction", "HOTFRAC", "share of hot pixels", &HotPixels::hot_pixel_fraction, 0.0,
        1.0},
       {"hot_pixel_e_per_s", "HOTRATE", "[e-/s] mean extra dark current of hot pixels",

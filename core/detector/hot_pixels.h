@@ -21,7 +21,7 @@ struct HotPixels {
   double hot_pixel_e_per_s = 0.0;   // mean of their extra dark current at dark_reference_c
   bool operator==(const HotPixels&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<HotPixels>> parameters();
   void switch_off() { hot_pixel_fraction = 0.0; }
   bool applies(const Detector&) const {
     return hot_pixel_fraction > 0.0 && hot_pixel_e_per_s > 0.0;

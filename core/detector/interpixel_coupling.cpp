@@ -11,8 +11,8 @@ double InterpixelCoupling::cost_s(int level, const PlanFacts& f) {
   return level * 1.3e-9 * f.pixels();
 }
 
-std::span<const DetectorParameter> InterpixelCoupling::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<InterpixelCoupling>> InterpixelCoupling::parameters() {
+  static constexpr ParameterOf<InterpixelCoupling> table[] = {
       {"interpixel_coupling", "IPC", "share of signal seen by each neighbour",
        &InterpixelCoupling::interpixel_coupling, 0.0, 0.2}};
   return table;

@@ -12,7 +12,7 @@ struct InterpixelCoupling {
   double interpixel_coupling = 0.0;  // share seen by each of four neighbours
   bool operator==(const InterpixelCoupling&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<InterpixelCoupling>> parameters();
   void switch_off() { interpixel_coupling = 0.0; }
   bool applies(const Detector&) const { return interpixel_coupling > 0.0; }
   void apply(const ExposureFacts& exposed, const ElectronImage& electrons, Piece& piece) const;

@@ -7,10 +7,10 @@ namespace dmise {
 
 double Nonlinearity::cost_s(int level, const PlanFacts& f) { return level * 0.5e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> Nonlinearity::parameters() {
-  static constexpr DetectorParameter table[] = {{"nonlinearity", "NONLIN",
-                                                 "relative loss of signal at full well",
-                                                 &Nonlinearity::nonlinearity, 0.0, 0.5}};
+std::span<const ParameterOf<Nonlinearity>> Nonlinearity::parameters() {
+  static constexpr ParameterOf<Nonlinearity> table[] = {{"nonlinearity", "NONLIN",
+                                                         "relative loss of signal at full well",
+                                                         &Nonlinearity::nonlinearity, 0.0, 0.5}};
   return table;
 }
 

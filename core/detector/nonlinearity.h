@@ -10,7 +10,7 @@ struct Nonlinearity {
   double nonlinearity = 0.0;  // relative loss of signal at full well, 0..0.5
   bool operator==(const Nonlinearity&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<Nonlinearity>> parameters();
   void switch_off() { nonlinearity = 0.0; }
   bool applies(const Detector&) const { return nonlinearity > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;

@@ -70,8 +70,8 @@ void caught(double fraction, double full_well_e, std::span<const float> collecte
     caught_e[i] = share * std::min(collected_e[i], well);
 }
 
-std::span<const DetectorParameter> Persistence::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<Persistence>> Persistence::parameters() {
+  static constexpr ParameterOf<Persistence> table[] = {
       {"persistence_fraction", "PERSFRAC", "share of the charge that is trapped",
        &Persistence::persistence_fraction, 0.0, 1.0},
       {"persistence_s", "PERSTAU", "[s] time constant of trapped charge",

@@ -45,7 +45,7 @@ struct Persistence {
   double persistence_s = 0.0;         // ... and freed with this time constant
   bool operator==(const Persistence&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<Persistence>> parameters();
   static std::optional<DetectorFault> fault(const Detector& detector);
   void switch_off() { persistence_fraction = 0.0; }
   bool applies(const Detector&) const { return persistence_fraction > 0.0; }

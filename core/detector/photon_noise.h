@@ -21,7 +21,7 @@ struct PhotonNoise {
   double drawn_dark_e_per_s = 0.0, drawn_read_noise_e = 0.0;
   bool operator==(const PhotonNoise&) const = default;
 
-  static std::span<const DetectorParameter> parameters() { return {}; }
+  static std::span<const ParameterOf<PhotonNoise>> parameters() { return {}; }
   void switch_off() { photons_are_drawn = false; }
   bool applies(const Detector&) const { return photons_are_drawn; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;

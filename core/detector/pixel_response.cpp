@@ -21,10 +21,10 @@ ErrorBound PixelResponse::error(int, const PlanFacts& f) const {
 
 double PixelResponse::cost_s(int level, const PlanFacts& f) { return level * 6.6e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> PixelResponse::parameters() {
-  static constexpr DetectorParameter table[] = {{"prnu_rms", "PRNU",
-                                                 "rms of the pixels' responses, relative",
-                                                 &PixelResponse::prnu_rms, 0.0, 0.2}};
+std::span<const ParameterOf<PixelResponse>> PixelResponse::parameters() {
+  static constexpr ParameterOf<PixelResponse> table[] = {{"prnu_rms", "PRNU",
+                                                          "rms of the pixels' responses, relative",
+                                                          &PixelResponse::prnu_rms, 0.0, 0.2}};
   return table;
 }
 

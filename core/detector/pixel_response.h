@@ -12,7 +12,7 @@ struct PixelResponse {
   double prnu_rms = 0.0;  // relative
   bool operator==(const PixelResponse&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<PixelResponse>> parameters();
   void switch_off() { prnu_rms = 0.0; }
   bool applies(const Detector&) const { return prnu_rms > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;

@@ -29,8 +29,8 @@ double weigh(const RngKey& key, std::uint32_t pixel, int count,
 
 double Ramp::cost_s(int level, const PlanFacts& f) { return level * 15e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> Ramp::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<Ramp>> Ramp::parameters() {
+  static constexpr ParameterOf<Ramp> table[] = {
       {"ramp_reads", "RAMPREAD", "reads up the ramp; 0: none", &Ramp::ramp_reads, 0, 4096, false,
        false, "reads of an exposure"},
       {"fowler_reads", "FOWLER", "reads at either end (Fowler); 0: a line", &Ramp::fowler_reads, 0,

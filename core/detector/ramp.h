@@ -23,7 +23,7 @@ struct Ramp {
   double reset_noise_e = 0.0;  // rms (kTC)
   bool operator==(const Ramp&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<Ramp>> parameters();
   static std::optional<DetectorFault> fault(const Detector& detector);
   void switch_off() { ramp_reads = 0; }
   bool applies(const Detector&) const { return ramp_reads > 0; }

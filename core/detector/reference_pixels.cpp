@@ -9,10 +9,10 @@ double ReferencePixels::cost_s(int level, const PlanFacts& f) {
   return level * 0.05e-9 * f.pixels();
 }
 
-std::span<const DetectorParameter> ReferencePixels::parameters() {
-  static constexpr DetectorParameter table[] = {{"reference_px", "REFPIX",
-                                                 "[px] border without light",
-                                                 &ReferencePixels::reference_px, 0, 1000}};
+std::span<const ParameterOf<ReferencePixels>> ReferencePixels::parameters() {
+  static constexpr ParameterOf<ReferencePixels> table[] = {
+      {"reference_px", "REFPIX", "[px] border without light", &ReferencePixels::reference_px, 0,
+       1000}};
   return table;
 }
 

@@ -13,7 +13,7 @@ struct ReferencePixels {
   int reference_px = 0;  // width of the border
   bool operator==(const ReferencePixels&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<ReferencePixels>> parameters();
   void switch_off() { reference_px = 0; }
   bool applies(const Detector&) const { return reference_px > 0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;

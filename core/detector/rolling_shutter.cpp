@@ -11,10 +11,10 @@ double RollingShutter::cost_s(int level, const PlanFacts& f) {
   return level * (0.3e-6 * f.stars + 60e-6 * double(f.objects));
 }
 
-std::span<const DetectorParameter> RollingShutter::parameters() {
-  static constexpr DetectorParameter table[] = {{"row_time_us", "ROWTIME",
-                                                 "[us] a row is exposed later than the one before",
-                                                 &RollingShutter::row_time_us, 0.0, 1e5}};
+std::span<const ParameterOf<RollingShutter>> RollingShutter::parameters() {
+  static constexpr ParameterOf<RollingShutter> table[] = {
+      {"row_time_us", "ROWTIME", "[us] a row is exposed later than the one before",
+       &RollingShutter::row_time_us, 0.0, 1e5}};
   return table;
 }
 

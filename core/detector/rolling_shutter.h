@@ -13,7 +13,7 @@ struct RollingShutter {
   double row_time_us = 0.0;  // 0: all rows at once
   bool operator==(const RollingShutter&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<RollingShutter>> parameters();
   static std::optional<DetectorFault> fault(const Detector& detector);
   void switch_off() { row_time_us = 0.0; }
   bool applies(const Detector&) const { return row_time_us > 0.0; }

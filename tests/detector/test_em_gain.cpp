@@ -1,4 +1,4 @@
-#include "core/detector/em_gain.h"
+#include "core/detector/readout/em_gain.h"
 
 #include <gtest/gtest.h>
 

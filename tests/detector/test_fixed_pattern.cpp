@@ -1,4 +1,4 @@
-#include "core/detector/fixed_pattern.h"
+#include "core/detector/readout/fixed_pattern.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "core/base/image.h"
@@ -17,7 +19,7 @@
 // A detector effect maps expected electrons or electrons to electrons or counts. It is a struct of
 // its parameters with
 //  static constexpr EffectFacts facts;
-//  static std::span<const DetectorParameter> parameters();
+//  static std::span<const ParameterOf<ITS NAME>> parameters();
 //  void switch_off();                    sets parameters with which it does nothing
 //  bool applies(const Detector&) const;  whether it changes anything in a frame
 //  apply(const ExposureFacts&, Piece&) const                         on a piece of the image, or
@@ -83,21 +85,43 @@ struct WholeImage {
   SaturatedPixels& saturated;
 };
 
-/// One parameter of the detector, for YAML, checks, FITS cards, digests, `dmise check` and the
-/// docs.
-struct DetectorParameter {
+/// One parameter of an effect, or of a whole detector (DetectorParameter), for YAML, checks, FITS
+/// cards, digests, `dmise check` and the docs.
+template <class Owner>
+struct ParameterOf {
   std::string_view key;      // in YAML and in messages: the field's name
   std::string_view keyword;  // in FITS; empty if the frame's header has it elsewhere
   std::string_view meaning;  // with the unit; comment of the FITS card
-  std::variant<double Detector::*, int Detector::*, bool Detector::*> value;
+  std::variant<double Owner::*, int Owner::*, bool Owner::*> value;
   double least = 0.0, most = 1.0;
   bool least_open = false;       // `least` itself is refused
   bool required = false;         // in YAML
   std::string_view reason = {};  // of the range, for messages
 
-  double number_of(const Detector& detector) const;
-  void set(Detector& detector, double number) const;
+  double number_of(const Owner& owner) const {
+    return std::visit([&](auto member) { return double(owner.*member); }, value);
+  }
+  void set(Owner& owner, double number) const {
+    std::visit(
+        [&](auto member) {
+          auto& field = owner.*member;
+          field = static_cast<std::remove_reference_t<decltype(field)>>(number);
+        },
+        value);
+  }
+  /// The parameter as one of a class that has the owner as its base.
+  template <class Derived>
+  ParameterOf<Derived> in() const {
+    const auto its = std::visit(
+        [](auto member) {
+          using Field = std::remove_reference_t<decltype(std::declval<Owner&>().*member)>;
+          return decltype(ParameterOf<Derived>::value)(static_cast<Field Derived::*>(member));
+        },
+        value);
+    return {key, keyword, meaning, its, least, most, least_open, required, reason};
+  }
 };
+using DetectorParameter = ParameterOf<Detector>;
 
 /// An invalid parameter.
 struct DetectorFault {

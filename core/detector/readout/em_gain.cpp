@@ -1,10 +1,9 @@
-#include "core/detector/em_gain.h"
+#include "core/detector/readout/em_gain.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/detector/detector.h"
 #include "core/detector/noise/poisson.h"
 #include "core/effects/plan_facts.h"
 
@@ -40,8 +39,8 @@ double gamma_deviate(const RngKey& key, std::uint32_t pixel, double shape) {
 
 double EmGain::cost_s(int level, const PlanFacts& f) { return level * 90e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> EmGain::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<EmGain>> EmGain::parameters() {
+  static constexpr ParameterOf<EmGain> table[] = {
       {"em_gain", "EMGAIN", "mean gain of the multiplication register", &EmGain::em_gain, 1.0, 1e4},
       {"em_stages", "EMSTAGES", "stages of the register", &EmGain::em_stages, 16, 10000, false,
        false, "stages of a register"},
@@ -50,11 +49,11 @@ std::span<const DetectorParameter> EmGain::parameters() {
   return table;
 }
 
-std::optional<DetectorFault> EmGain::fault(const Detector& d) {
+std::optional<DetectorFault> EmGain::fault(const EmGain& own) {
   // Above, a stage would more than double what it holds.
-  const double most = std::pow(1.9, d.em_stages);
-  if (d.em_gain <= most) return std::nullopt;
-  return DetectorFault{"em_gain", "must be below 1.9^em_stages", d.em_gain};
+  const double most = std::pow(1.9, own.em_stages);
+  if (own.em_gain <= most) return std::nullopt;
+  return DetectorFault{"em_gain", "must be below 1.9^em_stages", own.em_gain};
 }
 
 double EmGain::excess_noise2() const {

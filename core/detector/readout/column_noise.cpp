@@ -1,6 +1,5 @@
-#include "core/detector/column_noise.h"
+#include "core/detector/readout/column_noise.h"
 
-#include "core/detector/detector.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {
@@ -11,10 +10,10 @@ ErrorBound ColumnNoise::error(int, const PlanFacts& f) const {
 
 double ColumnNoise::cost_s(int level, const PlanFacts& f) { return level * 0.85e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> ColumnNoise::parameters() {
-  static constexpr DetectorParameter table[] = {{"column_noise_e", "COLNOISE",
-                                                 "[e-] rms offset of a column",
-                                                 &ColumnNoise::column_noise_e, 0.0, 1e6}};
+std::span<const ParameterOf<ColumnNoise>> ColumnNoise::parameters() {
+  static constexpr ParameterOf<ColumnNoise> table[] = {{"column_noise_e", "COLNOISE",
+                                                        "[e-] rms offset of a column",
+                                                        &ColumnNoise::column_noise_e, 0.0, 1e6}};
   return table;
 }
 

@@ -21,8 +21,8 @@ struct EmGain {
   double clock_induced_e = 0.0;  // mean of a pixel, Poisson
   bool operator==(const EmGain&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
-  static std::optional<DetectorFault> fault(const Detector& detector);
+  static std::span<const ParameterOf<EmGain>> parameters();
+  static std::optional<DetectorFault> fault(const EmGain& own);
   void switch_off() {
     em_gain = 1.0;
     clock_induced_e = 0.0;

@@ -1,10 +1,9 @@
-#include "core/detector/fixed_pattern.h"
+#include "core/detector/readout/fixed_pattern.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/detector/detector.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {
@@ -30,8 +29,8 @@ void add_normals(const RngKey& key, Draw draw, std::size_t first, double scale,
 
 double FixedPattern::cost_s(int level, const PlanFacts& f) { return level * 9e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> FixedPattern::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<FixedPattern>> FixedPattern::parameters() {
+  static constexpr ParameterOf<FixedPattern> table[] = {
       {"pixel_gain_rms", "PIXGAIN", "rms of the pixels' gains, relative",
        &FixedPattern::pixel_gain_rms, 0.0, 0.2},
       {"column_gain_rms", "COLGAIN", "rms of the columns' gains, relative",

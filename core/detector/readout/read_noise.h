@@ -14,7 +14,7 @@ struct ReadNoise {
   double read_noise_spread = 0.0;
   bool operator==(const ReadNoise&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<ReadNoise>> parameters();
   void switch_off() { read_noise_e = read_noise_spread = 0.0; }
   bool applies(const Detector&) const { return read_noise_e > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;

@@ -1,10 +1,9 @@
-#include "core/detector/read_noise.h"
+#include "core/detector/readout/read_noise.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/detector/detector.h"
 #include "core/detector/noise/detector_kernels.h"
 #include "core/effects/plan_facts.h"
 
@@ -14,8 +13,8 @@ ErrorBound ReadNoise::error(int, const PlanFacts& f) {
   return {.noise = f.without_charge(f.read_noise_e * f.read_noise_e).noise};
 }
 
-std::span<const DetectorParameter> ReadNoise::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<ReadNoise>> ReadNoise::parameters() {
+  static constexpr ParameterOf<ReadNoise> table[] = {
       {"read_noise_e", "", "[e-] rms", &ReadNoise::read_noise_e, 0.0, 1e6},
       {"read_noise_spread", "RNSPREAD", "deviation of the logarithm of the pixels' rms",
        &ReadNoise::read_noise_spread, 0.0, 2.0}};

@@ -13,8 +13,8 @@ struct Quantisation {
   int adc_bits = 16;  // 1..16: counts are 16-bit numbers in frames and messages
   bool operator==(const Quantisation&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
-  static std::optional<DetectorFault> fault(const Detector& detector);
+  static std::span<const ParameterOf<Quantisation>> parameters();
+  static std::optional<DetectorFault> fault(const Quantisation& own);
   void switch_off() { *this = {}; }
   bool applies(const Detector&) const { return true; }  // a frame always has counts
   void apply(const ExposureFacts& exposed, Piece& piece) const;

@@ -17,7 +17,7 @@ struct FixedPattern {
   double pixel_offset_e = 0.0, column_offset_e = 0.0;  // rms
   bool operator==(const FixedPattern&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<FixedPattern>> parameters();
   void switch_off() { *this = {}; }
   bool applies(const Detector&) const { return *this != FixedPattern{}; }
   /// Gain and offset of a column.

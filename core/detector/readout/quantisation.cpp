@@ -1,8 +1,7 @@
-#include "core/detector/quantisation.h"
+#include "core/detector/readout/quantisation.h"
 
 #include <cmath>
 
-#include "core/detector/detector.h"
 #include "core/detector/noise/detector_kernels.h"
 #include "core/effects/plan_facts.h"
 
@@ -10,8 +9,8 @@ namespace dmise {
 
 double Quantisation::cost_s(int, const PlanFacts& f) { return 0.35e-9 * f.pixels(); }
 
-std::span<const DetectorParameter> Quantisation::parameters() {
-  static constexpr DetectorParameter table[] = {
+std::span<const ParameterOf<Quantisation>> Quantisation::parameters() {
+  static constexpr ParameterOf<Quantisation> table[] = {
       {"gain_e_per_dn", "", "[e-/DN]", &Quantisation::gain_e_per_dn, 0.0, 1e6, true, true},
       {"bias_dn", "", "[DN] count of no electron", &Quantisation::bias_dn, 0.0, 65535.0},
       {"adc_bits", "ADCBITS", "bits of the ADC", &Quantisation::adc_bits, 1, 16, false, false,
@@ -19,9 +18,9 @@ std::span<const DetectorParameter> Quantisation::parameters() {
   return table;
 }
 
-std::optional<DetectorFault> Quantisation::fault(const Detector& d) {
-  if (d.bias_dn < std::exp2(d.adc_bits)) return std::nullopt;
-  return DetectorFault{"bias_dn", "must be below 2^adc_bits", d.bias_dn};
+std::optional<DetectorFault> Quantisation::fault(const Quantisation& own) {
+  if (own.bias_dn < std::exp2(own.adc_bits)) return std::nullopt;
+  return DetectorFault{"bias_dn", "must be below 2^adc_bits", own.bias_dn};
 }
 
 void Quantisation::apply(const ExposureFacts& exposed, Piece& piece) const {

@@ -13,7 +13,7 @@ struct ColumnNoise {
   double column_noise_e = 0.0;  // rms
   bool operator==(const ColumnNoise&) const = default;
 
-  static std::span<const DetectorParameter> parameters();
+  static std::span<const ParameterOf<ColumnNoise>> parameters();
   void switch_off() { column_noise_e = 0.0; }
   bool applies(const Detector&) const { return column_noise_e > 0.0; }
   using Prepared = std::vector<float>;  // by column [e-]
