@@ -98,6 +98,10 @@ const Section& fusion_section() {
        later(bound<&FusionSettings::confirm_arc>(
            "confirm_arc", form::integer(0, 1000),
            "Further detections that confirm a track that one site began.")),
+       later(bound<&FusionSettings::keep_orbits>(
+           "keep_orbits", form::flag(),
+           "Keep the orbits of objects from arc to arc of their detections by numerical forces, "
+           "find manoeuvres, and write `orbits.jsonl`. Runs of at most 18 days.")),
        bound<&FusionConfig::cue_delay_ticks>(
            "cue_delay_ticks", form::integer(1, 100000),
            "Ticks between the decision for a task and its beginning."),

@@ -28,6 +28,8 @@
 namespace dmise {
 namespace {
 
+constexpr double max_kept_s = 18 * 86400.0;  // of runs whose orbits are kept: forces reach 20 days
+
 const Section& simulation_section() {
   static const Section section{
       "simulation", "When the run begins, how long it lasts and in which steps.",
@@ -340,6 +342,8 @@ Scenario read_scenario(const YamlValue& root, OwnNodeModels models) {
     scenario.fusion->settings.ellipsoid = scenario.earth.ellipsoid;
     if (std::ranges::none_of(scenario.sensors, &SensorConfig::detect))
       fusion->fail("needs a sensor that detects", false);
+    if (scenario.fusion->settings.keep_orbits && scenario.duration.seconds() > max_kept_s)
+      fusion->fail("keep_orbits is for runs of at most 18 days", false);
   }
   assign_own_nodes(scenario);
   for (const SensorConfig& sensor : scenario.sensors) check_cued(scenario, sensor);

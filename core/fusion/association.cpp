@@ -66,10 +66,15 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
   for (LiveTrack* track : scene.placed)
     add({.track = track}, track->rough.position_m, track->rough.velocity_m_per_s,
         track->rough_sigma_m(settings_.acceleration_noise_m2_per_s3));
+  for (const std::size_t i : kept_ ? kept_->objects() : std::vector<std::size_t>{}) {
+    if (track_of_[i]) continue;
+    if (const auto place = kept_->place(i, scene.time))
+      add({.object = i}, place->state.position_m, place->state.velocity_m_per_s, place->sigma_m);
+  }
   for (std::size_t word = 0; word < inside.size(); ++word)
     for (std::uint64_t bits = inside[word]; bits != 0; bits &= bits - 1) {
       const std::size_t i = word * 64 + std::size_t(std::countr_zero(bits));
-      if (track_of_[i]) continue;
+      if (track_of_[i] || (kept_ && kept_->has(i))) continue;
       add({.object = i}, catalogue_.position_m(i), catalogue_.velocity_m_per_s(i),
           catalogue_.sigma_m(i));
     }
@@ -78,9 +83,10 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
 
 PredictedDirection Fusion::predicted(const Candidate& candidate, const SensorFrame& frame,
                                      const AngleObservation& observation) const {
-  if (!candidate.track)
-    return predict_direction(catalogue_.estimate(candidate.object), frame.sensor_m,
-                             observation.time);
+  if (!candidate.track) {
+    const auto now = believed(candidate.object, observation.time);
+    return now ? predict_direction(*now, frame.sensor_m, observation.time) : PredictedDirection{};
+  }
   const auto out = candidate.track->filter.predict(observation.time, frame.sensor_m);
   return out ? *out : PredictedDirection{};  // range 0: no prediction
 }

@@ -9,11 +9,12 @@
 namespace dmise {
 namespace {
 
-constexpr double together_s = 2.0;       // exposures that share a prediction of the catalogue
-constexpr double prior_before_s = 60.0;  // that late detections may precede the first
-constexpr double same_gate_d2 = 30.0;    // of two states of one object, 3 degrees of freedom
-constexpr double gone = 0.02;            // probability of existence at which a track ends
-constexpr double certain = 0.99;         // and with which it may be confirmed
+constexpr double together_s = 2.0;        // exposures that share a prediction of the catalogue
+constexpr double prior_before_s = 60.0;   // that late detections may precede the first
+constexpr double same_gate_d2 = 30.0;     // of two states of one object, 3 degrees of freedom
+constexpr double gone = 0.02;             // probability of existence at which a track ends
+constexpr double certain = 0.99;          // and with which it may be confirmed
+constexpr double around_run_s = 86400.0;  // that kept orbits reach beyond the run at either end
 
 FilterSettings filter_settings(const FusionSettings& s) {
   FilterSettings out;
@@ -37,7 +38,12 @@ Fusion::Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime 
       catalogue_(std::move(catalogue), clock, settings),
       start_(forces_, settings),
       arcs_(forces_, settings),
-      track_of_(catalogue_.size(), nullptr) {}
+      track_of_(catalogue_.size(), nullptr) {
+  if (!settings.keep_orbits) return;
+  const SimTime end{2 * reference.ns};
+  kept_ = std::make_unique<KeptOrbits>(clock, SimTime{} - sim_seconds(around_run_s),
+                                       end + sim_seconds(around_run_s));
+}
 
 FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
   std::ranges::sort(frames, [](const SensorFrame& a, const SensorFrame& b) {
@@ -60,17 +66,15 @@ FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
   }
   begin_unknown(loose);
   if (settings_.arc_exposures > 0) begin_from_arcs(loose);
+  FusionTick out;
+  if (kept_) keep_arcs(time, out.orbits);
   age(time);
 
-  FusionTick out;
   for (const auto& track : tracks_) {
     if (track->status != TrackStatus::lost) ++out.live;
     if (!track->changed) continue;
     Track& told = out.tracks.emplace_back(published(*track, time));
-    if (track->object) {
-      told.catalogue_number = catalogue_.elements(*track->object).catalogue_number;
-      told.name = catalogue_.elements(*track->object).name;
-    }
+    if (track->object) name_object(*track->object, told.catalogue_number, told.name);
     track->associated.clear();
     track->changed = false;
   }
@@ -82,11 +86,17 @@ FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
 }
 
 LiveTrack* Fusion::begin_catalogued(std::size_t object, SimTime seen) {
-  auto prior = propagate(forces_, catalogue_.estimate(object), seen - sim_seconds(prior_before_s),
-                         {.position_tolerance_m = 1e-2});
+  const auto now = believed(object, seen);
+  if (!now) return nullptr;
+  auto prior =
+      propagate(forces_, *now, seen - sim_seconds(prior_before_s), {.position_tolerance_m = 1e-2});
   if (!prior || !OrbitFilter::can_start(*prior)) return nullptr;
   tracks_.push_back(
       std::make_unique<LiveTrack>(next_id_++, OrbitFilter(forces_, *prior, filter_), object));
+  if (kept_) {
+    tracks_.back()->began_with = *prior;
+    tracks_.back()->arc.emplace();
+  }
   track_of_[object] = tracks_.back().get();
   return tracks_.back().get();
 }
@@ -147,6 +157,7 @@ void Fusion::begin(const StartedOrbit& orbit, int min_detections) {
   auto track = std::make_unique<LiveTrack>(
       next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
   track->min_detections = min_detections;
+  if (kept_) track->arc.emplace();
   std::vector<std::string> taken;
   for (const LooseSource& s : orbit.sources) {
     taken.push_back(seen(s).detection_id);
@@ -185,10 +196,7 @@ std::vector<CueTarget> Fusion::targets(SimTime time) const {
                      .existence = track->existence(),
                      .magnitude = track->magnitude(1e6),
                      .estimate = std::move(*estimate)};
-    if (track->object) {
-      target.catalogue_number = catalogue_.elements(*track->object).catalogue_number;
-      target.name = catalogue_.elements(*track->object).name;
-    }
+    if (track->object) name_object(*track->object, target.catalogue_number, target.name);
     out.push_back(std::move(target));
   }
   return out;

@@ -7,6 +7,7 @@
 #include "core/fusion/arc_start.h"
 #include "core/fusion/catalogue_prediction.h"
 #include "core/fusion/fusion_settings.h"
+#include "core/fusion/kept_orbits.h"
 #include "core/fusion/live_track.h"
 #include "core/fusion/observation_plan.h"
 #include "core/fusion/sensor_frame.h"
@@ -22,6 +23,7 @@ struct FusionTick {
   std::vector<Track> tracks;       // those that changed, by id
   std::uint32_t live = 0;          // tracks that have not ended
   std::uint32_t unassociated = 0;  // sources of the tick that no track took
+  std::vector<KeptOrbit> orbits;   // kept orbits that an arc changed, by track
 };
 
 /// Tracks of objects from the frames of all sensors: global nearest neighbours with gates, one
@@ -32,7 +34,7 @@ struct FusionTick {
 /// The result of a tick depends on its frames, not on their order.
 class Fusion {
  public:
-  /// `reference`: a time of the run, around which forces are tabulated.
+  /// `reference`: the middle of the run, around which forces are tabulated.
   Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
          const FusionSettings& settings = {});
   Fusion(const Fusion&) = delete;  // filters refer to its forces
@@ -63,6 +65,14 @@ class Fusion {
                  std::vector<std::string>& taken);
   void age(SimTime time);
 
+  // fusion_keeping.cpp
+  Outcome<OrbitEstimate> believed(std::size_t object, SimTime time) const;
+  void keep_arcs(SimTime time, std::vector<KeptOrbit>& orbits);
+  bool is_closed(const LiveTrack& track, SimTime time) const;
+  std::optional<KeptOrbit> keep(LiveTrack& track);
+  std::optional<std::size_t> manoeuvred(const LiveTrack& track, const OrbitState& seen);
+  void name_object(std::size_t object, std::uint32_t& catalogue_number, std::string& name) const;
+
   Clock clock_;
   FusionSettings settings_;
   ForceModel forces_;
@@ -71,7 +81,10 @@ class Fusion {
   TrackStart start_;
   ArcStart arcs_;
   std::vector<std::unique_ptr<LiveTrack>> tracks_;  // by id
-  std::vector<LiveTrack*> track_of_;                // of each catalogued object, null: none
+  std::vector<LiveTrack*> track_of_;                // of each object, null: none
+  std::unique_ptr<KeptOrbits> kept_;                // null: none are kept
+  // Objects beyond the catalogue, by the track with which each began.
+  std::vector<std::uint32_t> new_objects_;
   std::uint32_t next_id_ = 1;
 };
 

@@ -27,6 +27,7 @@ struct FusionSettings {
   int confirm_catalogued = 3;  // detections that confirm a track of a catalogued object
   int confirm_unknown = 6;     // and one of another, which begins with four
   int confirm_arc = 4;         // more than it began with, of one that one site began
+  bool keep_orbits = false;    // from arc to arc by numerical forces (KeptOrbits)
 };
 
 }  // namespace dmise

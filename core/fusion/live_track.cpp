@@ -50,6 +50,7 @@ void LiveTrack::count(const AngleObservation& observation, double magnitude_seen
   ++detections;
   last_seen = std::max(last_seen, observation.time);
   associated.push_back(observation.detection_id);
+  if (arc) arc->push_back(observation);
 }
 
 bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,

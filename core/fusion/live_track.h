@@ -39,6 +39,10 @@ struct LiveTrack {
   double innovation_d2 = 0.0;
   std::vector<std::string> associated;  // since the last tick
   bool changed = true;
+  // Where orbits are kept: what was believed of a catalogued object, and the detections that no
+  // kept orbit has yet.
+  std::optional<OrbitEstimate> began_with = {};
+  std::optional<std::vector<AngleObservation>> arc = {};
 
   // For a coarse search: the state at a common time, and its uncertainty.
   OrbitState rough;

@@ -154,6 +154,7 @@ void check(const JsonRecord& object, const LightCurve& light) {
 }
 
 void check(const JsonRecord&, const LightPeriod&) {}
+void check(const JsonRecord&, const KeptManoeuvre&) {}
 
 class JsonFieldReader {
  public:
@@ -286,6 +287,7 @@ std::string to_json(const FrameReport& r, const UtcText& utc, const UnknownFacts
 std::string to_json(const Truth& t, const UtcText& utc) { return line_of(t, utc); }
 std::string to_json(const Track& t, const UtcText& utc) { return line_of(t, utc); }
 std::string to_json(const Task& t, const UtcText& utc) { return line_of(t, utc); }
+std::string to_json(const KeptOrbit& k, const UtcText& utc) { return line_of(k, utc); }
 
 Detection detection_of(const JsonRecord& line) {
   const auto d = read_product<Detection>(line);
@@ -300,6 +302,7 @@ FrameReport report_of(const JsonRecord& line) { return read_product<FrameReport>
 Truth truth_of(const JsonRecord& line) { return read_product<Truth>(line); }
 Track track_of(const JsonRecord& line) { return read_product<Track>(line); }
 Task task_of(const JsonRecord& line) { return read_product<Task>(line); }
+KeptOrbit kept_orbit_of(const JsonRecord& line) { return read_product<KeptOrbit>(line); }
 
 Wcs wcs_of(const JsonRecord& object) {
   const auto wcs = read_product<Wcs>(object);

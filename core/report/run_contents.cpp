@@ -253,7 +253,7 @@ void read_ticks(RunContents& run) {
 void find_files(RunContents& run) {
   for (const RunFile& file :
        {run_file::record, run_file::frames, run_file::detections, run_file::truth, run_file::tracks,
-        run_file::tasks, run_file::positions_csv, run_file::positions})
+        run_file::orbits, run_file::tasks, run_file::positions_csv, run_file::positions})
     if (path_exists(path_in(run.directory, file))) run.files.push_back(file.name);
   std::vector<std::string> logs;
   std::error_code ignored;

@@ -143,7 +143,8 @@ std::optional<FusionEvaluator::Found> FusionEvaluator::fuse(Tick tick,
                           .live = found.live,
                           .unassociated = found.unassociated,
                           .tracks = std::move(found.tracks)},
-               .tasks = std::move(*tracked->tasks)};
+               .tasks = std::move(*tracked->tasks),
+               .orbits = std::move(found.orbits)};
 }
 
 std::vector<Task> FusionEvaluator::tasks_of(Tick tick, std::vector<CueWish>* wishes) {
@@ -171,6 +172,8 @@ void FusionEvaluator::open_files(Tick tick) {
   const SimTime from = scenario_.time_of(tick);
   tracks_.emplace(path_in(directory_, run_file::tracks), "time_ns", from);
   if (scheduler_) tasks_.emplace(path_in(directory_, run_file::tasks), "given_ns", from);
+  if (scenario_.fusion->settings.keep_orbits)
+    orbits_.emplace(path_in(directory_, run_file::orbits), "kept_ns", from);
   begun_ = true;
 }
 
@@ -182,6 +185,9 @@ void FusionEvaluator::write(const Found& found) {
   lines.clear();
   for (const Task& task : found.tasks) lines += to_json(task, utc) + "\n";
   if (tasks_) tasks_->add(lines);
+  lines.clear();
+  for (const KeptOrbit& orbit : found.orbits) lines += to_json(orbit, utc) + "\n";
+  if (orbits_) orbits_->add(lines);
 }
 
 std::vector<Message> FusionEvaluator::resume(Tick tick, std::span<const Message>) {

@@ -54,6 +54,7 @@ class FusionEvaluator : public Evaluator {
   struct Found {
     TrackSet tracks;
     std::vector<Task> tasks;
+    std::vector<KeptOrbit> orbits;
   };
   /// Nothing after the stop.
   std::optional<Found> fuse(Tick tick, std::span<const Message> inputs);
@@ -72,7 +73,7 @@ class FusionEvaluator : public Evaluator {
   std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
   std::set<std::pair<std::string, std::string_view>> noted_;  // sensors and obstacles
-  std::optional<LineFile> tracks_, tasks_;
+  std::optional<LineFile> tracks_, tasks_, orbits_;
   bool begun_ = false;
   std::atomic<std::uint64_t> progress_{0};
 };

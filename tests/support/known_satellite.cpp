@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/fusion/catalogue_prediction.h"
+#include "core/fusion/kept_orbits.h"
 #include "core/orbit/elements/catalogue.h"
 #include "core/orbit/elements/epoch.h"
 #include "core/orbit/motion.h"
@@ -110,12 +111,7 @@ OrbitEstimate believed(const MeanElements& elements, const Clock& clock, SimTime
   CataloguePrediction catalogue({elements}, clock, {});
   catalogue.move(time);
   if (!catalogue.known(0)) throw Error("SGP4 has no state");
-  OrbitEstimate out = catalogue.estimate(0);
-  // A scale of 0.02 m^2/kg is that of most satellites, by a factor of two.
-  constexpr double scale = 0.02, sigma = 0.02;
-  out.state.drag_m2_per_kg = out.state.srp_m2_per_kg = scale;
-  out.covariance(drag_row, drag_row) = out.covariance(srp_row, srp_row) = sigma * sigma;
-  return out;
+  return with_usual_scales(catalogue.estimate(0));
 }
 
 }  // namespace dmise

@@ -248,27 +248,31 @@ Eigen::Matrix4d ArcFit::covariance_of(std::size_t k) const {
   return half.transpose() * half;
 }
 
-Outcome<OrbitEstimate> move_on(const MaintenanceForces& forces, const OrbitEstimate& estimate,
-                               SimTime to) {
-  using Result = Outcome<OrbitEstimate>;
-  if (!(estimate.state.time < to)) return estimate;
-  const auto path = ArcPath::fly(forces, estimate.state, {}, to);
-  if (!path) return Result::refused(path.reason);
-  const OrbitMatrix all = path->transition(to);
-  OrbitEstimate out{path->at(to), all * estimate.covariance * all.transpose()};
+OrbitEstimate moved_along(const MaintenanceForces& forces, const ArcPath& path,
+                          const OrbitMatrix& covariance, SimTime to) {
+  const OrbitMatrix all = path.transition(to);
+  OrbitEstimate out{path.at(to), all * covariance * all.transpose()};
   const double every_s = forces.settings().noise_every_s;
-  for (SimTime t = estimate.state.time; t < to; t = t + sim_seconds(every_s)) {
+  for (SimTime t = path.start(); t < to; t = t + sim_seconds(every_s)) {
     const double length_s = std::min(every_s, (to - t).seconds());
     const SimTime middle = t + sim_seconds(length_s / 2);
-    const OrbitState there = path->at(middle);
+    const OrbitState there = path.at(middle);
     const Eigen::Matrix<double, orbit_size, 3> sized =
         velocity_rows(orbit_axes(there) * forces.noise_m_per_s(there, length_s).asDiagonal());
     const Eigen::Matrix<double, orbit_size, 3> effect =
-        all * path->transition(middle).inverse() * sized;
+        all * path.transition(middle).inverse() * sized;
     out.covariance += effect * effect.transpose();
   }
   out.covariance = 0.5 * (out.covariance + out.covariance.transpose()).eval();
   return out;
+}
+
+Outcome<OrbitEstimate> move_on(const MaintenanceForces& forces, const OrbitEstimate& estimate,
+                               SimTime to) {
+  if (!(estimate.state.time < to)) return estimate;
+  const auto path = ArcPath::fly(forces, estimate.state, {}, to);
+  if (!path) return Outcome<OrbitEstimate>::refused(path.reason);
+  return moved_along(forces, *path, estimate.covariance, to);
 }
 
 }  // namespace dmise

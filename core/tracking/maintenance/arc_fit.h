@@ -106,6 +106,10 @@ class ArcFit {
   double cost_ = 0.0, left_ = 0.0;
 };
 
+/// The estimate at a time on a path, of which the covariance at the start is given, with the noise
+/// of the forces.
+OrbitEstimate moved_along(const MaintenanceForces& forces, const ArcPath& path,
+                          const OrbitMatrix& covariance, SimTime to);
 /// An estimate moved on to a later time, with the noise of the forces.
 Outcome<OrbitEstimate> move_on(const MaintenanceForces& forces, const OrbitEstimate& estimate,
                                SimTime to);

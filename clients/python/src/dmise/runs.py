@@ -85,6 +85,12 @@ class Run:
         """A Task for each cue, none if the scenario cues no sensor."""
         return self._read("tasks.jsonl", Task)
 
+    @functools.cached_property
+    def orbits(self) -> list[dict[str, Any]]:
+        """A line of orbits.jsonl for each arc of a kept orbit, none unless the scenario's `fusion` has `keep_orbits`."""
+        path = self.directory / "orbits.jsonl"
+        return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()] if path.exists() else []
+
     def images(self, sensor: str) -> Iterator[tuple[int, pathlib.Path]]:
         """(frame, its FITS file) of a sensor, in order."""
         for path in sorted((self.directory / sensor).glob("frame-*.fits")):

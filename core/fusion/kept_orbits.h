@@ -1,0 +1,64 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/products/kept_orbit.h"
+#include "core/time/clock.h"
+#include "core/tracking/maintenance/catalogue_object.h"
+
+namespace dmise {
+
+/// Orbits of objects, kept from one arc of their detections to the next by numerical forces: what a
+/// fusion knows better than the element sets. An object is an index: of the catalogue, or beyond
+/// it.
+class KeptOrbits {
+ public:
+  /// Times between `first` and `last` are covered, at most 20 days.
+  KeptOrbits(const Clock& clock, SimTime first, SimTime last);
+  KeptOrbits(const KeptOrbits&) = delete;  // objects refer to its forces
+  KeptOrbits& operator=(const KeptOrbits&) = delete;
+
+  bool has(std::size_t object) const { return objects_.contains(object); }
+  std::vector<std::size_t> objects() const;  // in rising order
+
+  /// Where an object is, and the largest standard deviation of its position, for a coarse search.
+  struct Place {
+    OrbitState state;
+    double sigma_m = 0.0;
+  };
+  std::optional<Place> place(std::size_t object, SimTime time);
+  Outcome<OrbitEstimate> estimate(std::size_t object, SimTime time);
+
+  /// Takes an arc of detections, in any order. `prior`: what is believed of an object that is not
+  /// kept yet, before the arc. Detections before the last that were taken are left out. Refuses an
+  /// arc without others, and a prior without a path.
+  Outcome<KeptOrbit> take(std::size_t object, const OrbitEstimate& prior,
+                          std::vector<AngleObservation> arc);
+
+  /// The kept object of which a manoeuvre since its last arc explains this one, without outliers;
+  /// `seen`: about where the arc's object is. Only objects that `may_be` are tried.
+  std::optional<std::size_t> manoeuvred_to(const OrbitState& seen,
+                                           std::vector<AngleObservation> arc,
+                                           const std::function<bool(std::size_t)>& may_be);
+
+ private:
+  struct Kept {
+    CatalogueObject object;
+    std::uint32_t arcs = 0;
+    std::optional<OrbitEstimate> last = {};  // after the last arc
+    std::optional<ArcPath> ahead = {};       // from there
+    std::vector<double> sigma_m = {};        // along it, every sigma_step_s
+  };
+  bool look_ahead(Kept& kept, SimTime to);
+
+  SimTime last_;
+  MaintenanceForces forces_;
+  std::map<std::size_t, Kept> objects_;
+};
+
+/// An estimate whose scales of drag and sunlight are those of most satellites, to a factor of two.
+OrbitEstimate with_usual_scales(OrbitEstimate estimate);
+
+}  // namespace dmise
