@@ -22,7 +22,7 @@ struct CueSettings {
   double min_elevation_deg = 20.0, greatest_elevation_deg = 90.0;
   double sun_exclusion_deg = 30.0, moon_exclusion_deg = 5.0;  // from their middles
   int exposures = 3;                                          // most of one task, >= 1
-  double sigma_arcsec = 1.0;                                  // a detection's along each axis, > 0
+  double sigma_arcsec = 1.0;                                  // error of a place on each axis, > 0
   double limiting_magnitude = 14.0;
   double min_gain_nats = 0.1;  // a task that is expected to tell less is not given
 };

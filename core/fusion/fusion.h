@@ -71,7 +71,7 @@ class Fusion {
   TrackStart start_;
   ArcStart arcs_;
   std::vector<std::unique_ptr<LiveTrack>> tracks_;  // by id
-  std::vector<LiveTrack*> track_of_;                // by catalogued objects, null: none
+  std::vector<LiveTrack*> track_of_;                // for each catalogued object; null: none
   std::uint32_t next_id_ = 1;
 };
 

@@ -19,7 +19,7 @@ struct DarkMeasurement {
   std::optional<double> temperature_c;  // mean
   double temperature_spread_c = 0.0;    // largest difference
   double drift = 0.0;        // rms of the frames' rates about the mean, where significant
-  std::vector<float> rates;  // each pixel's: its own if it is hot
+  std::vector<float> rates;  // one for each pixel: its own if it is hot
 };
 
 /// Measures darks that are longer than the bias's exposure. `saturation_dn`: above the bias; 0 if

@@ -15,7 +15,7 @@ constexpr double response_outlier_sigmas = 6.0;
 struct TileCovariance {
   double covariance = 0.0, pixels = 0.0, mean = 0.0;  // mean of the first
   double variance = 0.0;                              // pixels' variance in the mean of both
-  std::vector<float> deviations;                      // each pixel's in the mean of both
+  std::vector<float> deviations;                      // one for each pixel, in the mean of both
 };
 
 /// A tile's relative deviations from its mean, slopes and bends: vignetting bends a tile by as much

@@ -20,7 +20,7 @@ class PixelSeries {
   /// A pixel over all frames.
   struct Result {
     double mean = 0.0;
-    double variance = 0.0;  // a frame's, over that by its sigma: 1 if as expected
+    double variance = 0.0;  // scatter between frames over that by their sigmas: 1 if as expected
     bool struck = false;    // by a particle: its largest value is left out
   };
   /// Takes two frames at least. NaN where a frame has no value.

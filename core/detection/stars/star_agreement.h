@@ -10,7 +10,7 @@ namespace dmise {
 /// Light of a catalogue's stars in a part of a frame.
 struct StarLightRatio {
   double middle = 1.0;    // median of their light over what is expected
-  double scatter = 0.15;  // the logarithm's: scintillation, errors of the catalogue, blends
+  double scatter = 0.15;  // in the logarithm: scintillation, errors of the catalogue, blends
 };
 
 /// How the stars that a catalogue expects agree with a frame. Variable stars take no part.

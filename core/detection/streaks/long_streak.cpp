@@ -235,7 +235,7 @@ std::optional<Source> final_fit(const Scene& scene, const Trail& trail, double m
   return source;
 }
 
-constexpr double flicker_error = 1.0;  // the model's, for light that changes along the line
+constexpr double flicker_error = 1.0;  // relative error of the model for light that changes
 
 /// The final fit of a streak whose light changes along it, with the light of a line of free pieces;
 /// empty if that does not explain the pixels.

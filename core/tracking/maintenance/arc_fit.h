@@ -69,7 +69,7 @@ class ArcFit {
   // What a search for manoeuvres needs.
   const ArcInformation& information_after(SimTime time) const;
   const std::vector<ArcUnknown>& unknowns() const { return unknowns_; }
-  double value(long i) const { return values_[i]; }  // an unknown's
+  double value(long i) const { return values_[i]; }  // fitted value of an unknown
 
  private:
   ArcFit(const MaintenanceForces& forces, const OrbitEstimate& prior)
