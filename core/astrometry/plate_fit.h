@@ -21,8 +21,8 @@ struct PlateMatch {
 struct PlateFreedom {
   bool focal_length = false;
   bool centre = false;
-  int order = 0;        // of the distortion
-  bool radial = false;  // of order 0: its one term that is symmetric about the axis
+  int order = 0;        // order of the distortion
+  bool radial = false;  // with order 0: the one term that is symmetric about the axis
 
   int size() const { return 3 + focal_length + 2 * centre + radial + distortion_size(order); }
   bool operator==(const PlateFreedom&) const = default;
@@ -34,9 +34,9 @@ struct PlateFit {
   PlateModel model;
   PlateFreedom free;
   std::vector<double> covariance;  // free.size() squared
-  std::vector<char> used;          // of each match: not an outlier
-  int count = 0;                   // of matches used
-  double chi2 = 0.0;               // of these, by the stated covariances
+  std::vector<char> used;          // by matches: whether it is no outlier
+  int count = 0;                   // matches used
+  double chi2 = 0.0;               // by the stated covariances of these
   double rms_px = 0.0;             // residual distance of these
   /// Residuals over what the stated covariances expect, >= 1; the covariance holds its square.
   double error_scale = 1.0;

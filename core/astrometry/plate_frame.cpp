@@ -12,7 +12,7 @@ constexpr std::size_t growing_sources = 300;
 constexpr std::size_t least_exact = 10;
 /// Measurements a parameter from which on it may be chosen, and be heard as a rival.
 constexpr double min_measured = 5.0, least_of_rivals = 1.5;
-constexpr double min_weight = 0.01;  // of a rival
+constexpr double min_weight = 0.01;  // a rival has at least so much
 /// Distortion of a lens of which nothing is known, at the corner, relative to the way there.
 constexpr double unknown_distortion = 0.003;
 /// The rest of the distortion of a lens, over its radial term of third order.
@@ -217,7 +217,7 @@ double PlateSolution::sigma_px(const Vec<Gcrs>& direction, PixelPosition pixel) 
 
 std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
   PlateSolution solution;
-  std::size_t count = 0, exact = 0;  // of sources, and of those that are not saturated
+  std::size_t count = 0, exact = 0;  // sources, and those that are not saturated
   while (count < sources_.size() && exact < search_.max_stars)
     exact += !sources_[count++].saturated;
   const auto sources = std::span(sources_).first(count);

@@ -30,7 +30,7 @@ struct PlateSearch {
   double min_log_odds = 13.8;             // one chance in a million to be wrong
   double star_sigma_rad = 0.05 * arcsec;  // error of the catalogue's places
   std::size_t max_stars = 2000;           // that take part in the final fit
-  int max_order = 5;                      // of the distortion
+  int max_order = 5;                      // highest order of the distortion
 };
 
 /// A fit that leaves something else free and that the stars do not exclude.
@@ -46,7 +46,7 @@ struct PlateSolution {
   /// Radial distortion in a corner that the fit leaves out and its stars allow, rms.
   double left_out_px = 0.0;
   std::vector<SeenStar> stars;
-  std::vector<PlateMatch> matches;  // of `stars` with sources, by the order given
+  std::vector<PlateMatch> matches;  // pairs `stars` with sources, by the order given
   double log_odds = 0.0;            // that it is no chance match among all that were tried
   std::size_t tried = 0;            // candidates
 
@@ -101,7 +101,7 @@ class PlateFrame {
   const PlateSearch& search_;
   std::vector<PlateSource> sources_;     // by falling flux
   std::vector<std::uint32_t> original_;  // their places in the caller's list
-  std::size_t bright_ = 0;               // of sources, with which a plate grows
+  std::size_t bright_ = 0;               // sources with which a plate grows
   std::optional<SourceGrid> bright_grid_;
 };
 

@@ -27,7 +27,7 @@ class SourceGrid {
  private:
   std::span<const PlateSource> sources_;
   double cell_px_;
-  int columns_, rows_;  // of cells
+  int columns_, rows_;  // size of the grid of cells
   std::vector<std::uint32_t> first_, order_;
 };
 

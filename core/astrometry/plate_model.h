@@ -23,7 +23,7 @@ struct PlateModel {
   Rotation<CameraFrame, Gcrs> camera_from_gcrs;
   double focal_length_px = 0.0;
   PixelPosition centre;            // pixel on the axis
-  int order = 0;                   // of the distortion
+  int order = 0;                   // order of the distortion
   double unit_px = 1.0;            // U and V are (pixel - centre) / unit_px
   std::vector<double> distortion;  // [px], `distortion_size(order)` coefficients
 

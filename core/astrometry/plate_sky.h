@@ -24,12 +24,12 @@ class PlateSky {
   const std::optional<Air>& air() const { return air_; }
   const ApparentPlaces& places() const { return places_; }
   Vec<Gcrs> direction(std::uint32_t star) const;
-  /// Number of stars not fainter than a magnitude; the magnitude that as many stars reach. Of large
-  /// catalogues to a tenth of a magnitude.
+  /// Number of stars not fainter than a magnitude; the magnitude that as many stars reach. Large
+  /// catalogues tell them to a tenth of a magnitude.
   std::size_t brighter_than(float v_mag) const;
   float magnitude_of_rank(double rank) const;
-  /// Numbers of the stars within `radius_rad` of an axis in the catalogue, of the brightest `rank`
-  /// of the whole sky.
+  /// Numbers of the stars within `radius_rad` of an axis in the catalogue, among the brightest
+  /// `rank` of the whole sky.
   std::vector<std::uint32_t> catalogued(const Vec<Gcrs>& axis, double radius_rad,
                                         double rank) const;
   /// The brightest `most` stars within `radius_rad` of an apparent axis and above the horizon, by
@@ -40,7 +40,7 @@ class PlateSky {
   const StarMap& map_;
   std::optional<Air> air_;
   ApparentPlaces places_;
-  std::vector<float> sorted_v_mag_;  // of small catalogues
+  std::vector<float> sorted_v_mag_;  // empty for large catalogues
 };
 
 }  // namespace dmise

@@ -78,7 +78,7 @@ void visit_patterns(std::span<const std::complex<double>> places, int others, Vi
 /// Patterns of the catalogue, found by their codes.
 class PatternIndex {
  public:
-  /// Of `stars` of the catalogue and `neighbours` of each, 2 or 3 `others` at a time.
+  /// Takes `stars` of the catalogue and `neighbours` of each, 2 or 3 `others` at a time.
   PatternIndex(const PlateSky& sky, std::vector<std::uint32_t> stars, std::size_t neighbours,
                int others);
 
@@ -123,13 +123,13 @@ class PatternIndex {
   std::size_t neighbours_;
   std::vector<std::uint32_t> stars_, near_;  // `neighbours_` of each star
   std::vector<Entry> entries_;               // by cell
-  std::vector<std::uint32_t> first_;         // of each cell
+  std::vector<std::uint32_t> first_;         // first entry of each cell
 };
 
 /// Quads of a catalogue's whole sky, kept for further frames.
 class PatternCache {
  public:
-  /// Of at least the stars up to a rank in brightness, and at most 400,000. `sky` must be of the
+  /// Uses at least the stars up to a rank in brightness, and at most 400,000. `sky` must be of the
   /// same catalogue each time.
   const PatternIndex& whole_sky(const PlateSky& sky, double rank);
 

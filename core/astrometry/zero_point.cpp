@@ -127,7 +127,7 @@ std::optional<ZeroPoint> fit(std::span<const PhotometricStar> stars, ZeroPoint z
     }
     if (z.stars < int(n) || !invert_positive(weighted, int(n)) || !invert_positive(normal, int(n)))
       return std::nullopt;
-    // Of an M-estimator (Huber 1981, Robust Statistics, section 7.6), never less than stated.
+    // An M-estimator's scale (Huber 1981, Robust Statistics, section 7.6), never less than stated.
     const double count = double(stars.size());
     const double scale =
         count > double(n) && slope > 0

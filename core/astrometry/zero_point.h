@@ -9,7 +9,7 @@ namespace dmise {
 struct PhotometricStar {
   double instrumental_mag = 0.0;  // -2.5 log10 of electrons per second
   double sigma_mag = 0.0;
-  double v_mag = 0.0, bv = 0.0;  // of the catalogue
+  double v_mag = 0.0, bv = 0.0;  // by the catalogue
   double airmass = 0.0;          // at its apparent altitude; 0 in space
 };
 
@@ -23,8 +23,7 @@ struct ZeroPoint {
   bool colour_fitted = false, extinction_fitted = false;
   int stars = 0;  // without outliers
   double rms_mag = 0.0;
-  /// Variance of stars besides their photons': of all alike, and by scintillation at an airmass
-  /// of 1.
+  /// Variance of stars besides their photons': equal for all, and by scintillation at airmass 1.
   double even_mag2 = 0.0, scintillation_mag2 = 0.0;
 
   double sigma(std::size_t i) const;

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr double max_shift_px = 0.2;  // of the stars from where the header has them
+constexpr double max_shift_px = 0.2;  // from where the header has the stars to where they are
 constexpr double max_shift_sigmas = 5.0;
 constexpr int min_stars = 8;  // expected, and seen, before the header is doubted
 

@@ -9,7 +9,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t min_pixels = 3;
-constexpr double min_factor = 1.5;  // of a peak's value over a saddle's
+constexpr double min_factor = 1.5;  // a peak's value over a saddle's
 
 struct BlendPixel {
   int x, y;

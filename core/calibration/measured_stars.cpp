@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr double usual_fwhm_px = 2.0;  // of a header without one
+constexpr double usual_fwhm_px = 2.0;  // for a header without one
 /// Reach of wings in widths, and sources in it beyond which wings are not told from neighbours.
 constexpr double wings = 10.0, most_within_wings = 0.5;
 

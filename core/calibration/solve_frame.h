@@ -23,7 +23,7 @@ struct FrameSolution {
   Wcs wcs;  // astrometric, so annual aberration and refraction are in it
   std::optional<ZeroPoint> zero_point;
   std::size_t sources = 0;
-  FrameNotes notes;  // of what it took for granted, beside the frame's
+  FrameNotes notes;  // what it took for granted, beside the frame's
 };
 
 /// Solves a frame by its counts and its header's site, time, lens and detector. The header's

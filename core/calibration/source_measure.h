@@ -11,7 +11,7 @@
 
 namespace dmise {
 
-inline constexpr double min_variance_px2 = 0.1;  // of an image along x and along y
+inline constexpr double min_variance_px2 = 0.1;  // along x and along y in an image
 
 /// An image's place, second moments and light, weighted by a Gaussian of these moments.
 struct SourceMoments {

@@ -15,11 +15,11 @@
 namespace dmise {
 namespace {
 
-constexpr double common_error_mag = 0.01;   // of the stars' measurement, equal for all
+constexpr double common_error_mag = 0.01;   // error of the stars' light, equal for all
 constexpr double gaussian_error_mag = 0.1;  // equal for all, by Gaussians: wings are 0 to 0.23 mag
-constexpr double min_snr = 12.0;            // of stars that are found however noise dims them
-constexpr double low_deviations = 2.5;      // of the stars' scatter, by which they may be fainter
-constexpr double max_shared = 0.1;          // of a star's light, from neighbours
+constexpr double min_snr = 12.0;            // brighter stars are found however noise dims them
+constexpr double low_deviations = 2.5;      // stars may be fainter by so much of their scatter
+constexpr double max_shared = 0.1;          // light from neighbours, over a star's own
 constexpr double max_airmass = 3.0;         // scintillation, haze and the band's width below
 constexpr std::size_t enough_stars = 20;    // to do without others
 constexpr std::size_t complete_sources = 1000;  // fewer were not cut off at a number
@@ -28,7 +28,7 @@ constexpr std::size_t complete_sources = 1000;  // fewer were not cut off at a n
 struct Candidate {
   PhotometricStar star;
   double flux_e = 0.0, sky_e2 = 0.0;  // measured; variance without the star's photons
-  double light = 1.0;                 // of the lens there, relative
+  double light = 1.0;                 // what the lens lets pass there, relative
   double shared_e = 0.0;              // from neighbours
 };
 
@@ -172,7 +172,7 @@ std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& 
     }
     std::vector<double> sorted = margins;
     std::ranges::sort(sorted, std::greater());
-    double limit = 1.0;  // of few stars, more are taken
+    double limit = 1.0;  // lower where there are few stars
     if (!sorted.empty()) limit = std::min(limit, sorted[std::min(sorted.size(), enough_stars) - 1]);
     for (std::size_t i = 0; i < candidates.size(); ++i)
       if (margins[i] >= limit) stars.push_back(candidates[i].star);

@@ -181,7 +181,7 @@ std::vector<PlateSource> find_star_sources(const CountImage& counts,
 std::optional<StarShape> measure_star_shape(const CountImage& counts,
                                             const StarSourceSettings& settings, Threads& threads) {
   constexpr std::size_t least = 5, most = 200;
-  constexpr double min_agreement = 0.8;  // of angles: the mean of unit vectors of twice the angle
+  constexpr double min_agreement = 0.8;  // length of the mean of unit vectors of twice the angle
   const StarImages images(counts, settings, threads);
   StarShape shape{.sigma_px = images.sigma_px()};
   std::vector<double> lengths;

@@ -16,13 +16,13 @@ struct StarSourceSettings {
   double psf_fwhm_px = 0.0;        // about; 0: not known
   double min_snr = 6.0;
   std::size_t most = 2000;  // the brightest, and further ones until as many are not saturated
-  const StarMotion* motion = nullptr;  // of the stars, if known
+  const StarMotion* motion = nullptr;  // the stars' motion, if known
   bool unknown_mount = false;          // so that long trails by `motion` are searched as trails
 };
 
 /// Returns stars, and sources that look like them, by falling flux [e-]. Places are of a fitted
 /// Gaussian of the stars' common width, or of a trail of it; those of saturated ones are moments.
-/// Of an unknown mount whose stars trail far they are the middles of the trails.
+/// If stars of an unknown mount trail far, they are the middles of the trails.
 /// Equal for any number of threads.
 std::vector<PlateSource> find_star_sources(const CountImage& counts,
                                            const StarSourceSettings& settings, Threads& threads);
@@ -36,11 +36,11 @@ struct StarEllipse {
 
 /// Common shape of the images of a frame's stars.
 struct StarShape {
-  double sigma_px = 0.0;              // of the Gaussian that fits best, including the pixel
-  double length_px = 0.0;             // of trails that are longer than wide; 0 if there are none
-  double angle_rad = 0.0;             // of the trails, against x towards y
+  double sigma_px = 0.0;              // width of the Gaussian that fits best, including the pixel
+  double length_px = 0.0;             // length of trails longer than wide; 0 if there are none
+  double angle_rad = 0.0;             // direction of the trails, against x towards y
   int stars = 0;                      // that were fitted
-  std::vector<StarEllipse> ellipses;  // of each
+  std::vector<StarEllipse> ellipses;  // one for each star
 };
 
 /// Measures it in the brightest images that are not saturated; empty if there are fewer than five.

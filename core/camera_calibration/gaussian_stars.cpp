@@ -39,7 +39,7 @@ std::pair<double, ImageTerms> gaussian_pixel(const ImageTerms& p, double dx, dou
   return {p[0] * by[0] + p[6], by};
 }
 
-using ImageMatrix = std::vector<double>;  // of the terms, by rows
+using ImageMatrix = std::vector<double>;  // square in the terms, by rows
 
 /// Normal equations of a fit over the pixels within a radius of a middle.
 struct ImageEquations {
@@ -105,7 +105,7 @@ struct ImageNoise {
 struct FittedImage {
   GaussianStar star;
   ImageNoise flux, width;
-  double even_variance = 0.0;  // of its pixels, less the star's photons
+  double even_variance = 0.0;  // variance of its pixels, less the star's photons
 };
 
 /// Levenberg's method.
@@ -261,7 +261,7 @@ std::optional<StarAperture> aperture_light(
   };
   std::vector<float> ring;
   const double here = illumination(at);
-  double sum = 0.0, n = 0.0;  // of the aperture; pixels by what the lens lets pass there
+  double sum = 0.0, n = 0.0;  // light in the aperture; pixels by what the lens lets pass there
   const int reach = int(outer_px), cx = int(std::lround(at.x_px)), cy = int(std::lround(at.y_px));
   for (int y = cy - reach; y <= cy + reach; ++y)
     for (int x = cx - reach; x <= cx + reach; ++x) {

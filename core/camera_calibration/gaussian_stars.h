@@ -12,7 +12,7 @@ namespace dmise {
 struct StarPixels {
   int columns = 0, rows = 0;
   std::vector<float> light_e;  // NaN where a pixel is of no use
-  std::vector<float> hot_e;    // of hot pixels, which is taken off; may be empty
+  std::vector<float> hot_e;    // light of hot pixels, which is taken off; may be empty
   double saturation_e = 0.0;   // light from here on may be clipped
 
   double at(int x, int y) const {
@@ -35,7 +35,7 @@ struct GaussianStar {
   PixelPosition at;
   double flux_e = 0.0, flux_sigma_e = 0.0;
   double xx_px2 = 0.0, xy_px2 = 0.0, yy_px2 = 0.0;
-  double variance_sigma_px2 = 0.0;  // of their mean, by the noise of sky and of the star's photons
+  double variance_sigma_px2 = 0.0;  // error of their mean, by noise of the sky and star's photons
 
   double mean_px2() const { return 0.5 * (xx_px2 + yy_px2); }
 };

@@ -29,9 +29,9 @@ struct LensModel {
 };
 
 struct LensState {
-  std::vector<double> normal, right;             // of what is shared, without the attitudes
-  std::vector<std::array<double, 12>> attitude;  // of each frame: inverse 3 x 3, right hand
-  std::vector<std::vector<double>> mixed;        // of each frame: shared x 3
+  std::vector<double> normal, right;             // what is shared, without the attitudes
+  std::vector<std::array<double, 12>> attitude;  // by frames: inverse 3 x 3, right hand
+  std::vector<std::vector<double>> mixed;        // by frames: shared x 3
   double chi2 = 0.0, squares_px2 = 0.0;
   int stars = 0;
 };

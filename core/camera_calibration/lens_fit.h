@@ -20,7 +20,7 @@ struct LensFrame {
 struct LensFit {
   Projection projection;
   MeasuredValue focal_length_px;
-  std::vector<MeasuredValue> coefficients;  // of the distortion that was fitted, from the first on
+  std::vector<MeasuredValue> coefficients;  // distortion as fitted, from the first term on
   bool distorted = false;                   // whether the stars show it: else `projection` has none
   double rms_px = 0.0;
 };

@@ -17,7 +17,7 @@ struct FieldWidth {
 
 /// Width of the stars of all frames, before pixels.
 struct LensWidth {
-  MeasuredValue even_px2;         // of all stars alike
+  MeasuredValue even_px2;         // equal for all stars
   std::vector<FieldWidth> field;  // by rising radius; empty of few stars
   MeasuredValue growth_px2;       // from the middle to the corner, of the mean
   MeasuredValue elongation_px2;   // in the corner: radial less tangential

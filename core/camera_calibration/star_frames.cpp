@@ -42,10 +42,10 @@ std::optional<MeasuredValue> joined(const std::vector<MeasuredValue>& values) {
 /// What the frames of a set have shown so far.
 struct StarValues {
   std::vector<MeasuredValue> focal;
-  std::vector<MeasuredValue> zero_point;  // of single frames, by the light that solving measures
+  std::vector<MeasuredValue> zero_point;  // by single frames, from the light that solving measures
   std::vector<GaussianStar> images;
   std::vector<StarZeroPoint> light;   // within apertures
-  double extinction_sigma_mag = 0.0;  // of what extinction adds to the light, the greatest
+  double extinction_sigma_mag = 0.0;  // greatest error of what extinction adds to the light
   std::vector<LensFrame> lens;
   Projection projection;
 };
@@ -56,7 +56,7 @@ struct StarFrame {
   Frame frame;
   StarPixels pixels;
   std::vector<FoundStar> places;
-  double fwhm_px = 0.0;  // of the Gaussians, before pixels
+  double fwhm_px = 0.0;  // width of the Gaussians, before pixels
 };
 
 /// The place of each match of a plate; the number of places if there is none.
@@ -105,8 +105,8 @@ double light_within(const PlateSolution& plate, std::span<const PixelPosition> a
   return sum;
 }
 
-/// Which places are stars of the catalogue without another one near: stars within a width or two
-/// of each other are found as one place, which is wider than a star.
+/// Which places are stars of the catalogue without another one near: stars a width or two apart
+/// are found as one place, which is wider than a star.
 std::vector<char> single_stars(const StarFrame& in, const FrameSolution& solution) {
   constexpr double most_of_others = 0.002;
   const auto at = places_of_stars(solution.plate);
@@ -155,7 +155,7 @@ double light_of_neighbours(const PlateSolution& plate, std::span<const PixelPosi
     const PixelPosition d = at[i] - at[star];
     const double beyond = (std::hypot(d.x_px, d.y_px) - radius_px) / fwhm_px;
     if (i == star || !(beyond < 1.5)) continue;
-    // Of a Gaussian as far from an edge, whose deviation is the width over 2.355.
+    // Share of a Gaussian past an edge as far away; its deviation is the width over 2.355.
     const double within = 0.5 * std::erfc(beyond * fwhm_of_sigma / std::sqrt(2.0));
     sum += within * std::pow(10.0, 0.4 * double(plate.stars[star].v_mag - plate.stars[i].v_mag));
   }

@@ -19,7 +19,7 @@ struct StarMeasurement {
   std::optional<LensFit> lens;     // by the stars of all frames
   std::optional<LensWidth> width;  // before pixels and coupling
   int width_frames = 0;
-  /// Of 1 e-/s on the axis, for the V of a source of the Sun's colour; with the air of the frame
+  /// V of a source of the Sun's colour that gives 1 e-/s on the axis; with the air of the frame
   /// where its stars do not show the air.
   std::optional<MeasuredValue> zero_point_mag;
   bool with_air = false;

@@ -10,7 +10,7 @@ namespace dmise {
 /// The zero point that one star shows.
 struct StarZeroPoint {
   double mag = 0.0, sigma_mag = 0.0;
-  double bv = 0.0;  // of the star
+  double bv = 0.0;  // colour of the star
   std::size_t frame = 0;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double bend_error = 0.3;       // relative, of a bend that is not fitted
 constexpr double slope_error = 0.3;      // relative, of a change of brightness
-constexpr double most_off_middle = 0.5;  // of mid exposure, in half lengths, where it is corrected
+constexpr double most_off_middle = 0.5;  // mid exposure is corrected up to here [half lengths]
 
 struct Tangent {
   Vec<Gcrs> east, north;
@@ -143,7 +143,7 @@ struct SourceLine {
   PixelPosition middle;
   double length_px = 0.0, angle_rad = 0.0;
   bool knows_slope = false, knows_bend = false;
-  std::function<MeasuredPlace(double)> point;  // of the line: -1 and 1 are its ends
+  std::function<MeasuredPlace(double)> point;  // place on the line: -1 and 1 are its ends
 };
 
 /// Whether a streak's end is the first of both.

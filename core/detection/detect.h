@@ -20,7 +20,7 @@ struct DetectionResult {
 
 /// What is measured of detections beyond what always is.
 struct DetectSettings {
-  bool light_curves = false;  // of streaks
+  bool light_curves = false;  // measures how the light of streaks varies
 };
 
 /// Detects what is no star, from the counts and the header alone. With a catalogue of stars, its

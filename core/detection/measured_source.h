@@ -15,14 +15,14 @@ struct MeasuredPlace {
 
 /// A source that another detector than ours found in a frame.
 struct MeasuredSource {
-  MeasuredPlace centroid;                            // of its light
-  std::optional<std::array<MeasuredPlace, 2>> ends;  // of a streak
+  MeasuredPlace centroid;
+  std::optional<std::array<MeasuredPlace, 2>> ends;  // only streaks have them
   double light_e = 0.0;                              // above the background
   double snr = 0.0;                                  // light_e / its standard error
 };
 
 inline constexpr std::size_t max_measured_sources = 100'000;  // in a frame
-inline constexpr double max_outside_px = 16.0;                // of a place beyond the frame's edge
+inline constexpr double max_outside_px = 16.0;                // from the frame's edge to a place
 inline constexpr double max_sigma_px = 10'000.0;
 
 /// Throws `Error` "found[3].x_px: must be finite, got nan" for sources that can't be of a frame of

@@ -6,7 +6,7 @@
 
 namespace dmise {
 
-inline constexpr std::size_t max_sightings = 100'000;  // of an exposure
+inline constexpr std::size_t max_sightings = 100'000;  // in an exposure
 
 /// Throws `Error` "KEY: reason, got VALUE" for what can't have been seen from `start` to `end`.
 void check_observed(const Observed& observed, SimTime start, SimTime end);

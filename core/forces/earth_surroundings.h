@@ -16,7 +16,7 @@ class EarthSurroundings {
 
   struct At {
     Rotation<Itrs, Gcrs> itrs_from_gcrs;
-    Vec<Gcrs> pole;  // of the Earth's rotation
+    Vec<Gcrs> pole;  // axis of the Earth's rotation
     Vec<Gcrs> sun_m, moon_m;
   };
   /// At a simulation time; beyond the span it is less accurate. Interpolation adds 10 m to the Sun

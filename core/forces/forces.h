@@ -11,7 +11,7 @@ namespace dmise {
 /// Forces that act on an object.
 struct ForceSettings {
   int zonals = 4;         // highest zonal harmonic of the Earth: 0 (two-body), 2, 3 or 4
-  bool drag = true;       // of states with drag_m2_per_kg != 0
+  bool drag = true;       // acts on states with drag_m2_per_kg != 0
   bool radiation = true;  // pressure of sunlight on states with srp_m2_per_kg != 0
   bool sun_moon = false;  // attraction of Sun and Moon as points
 };
@@ -48,7 +48,7 @@ class ForceModel {
   };
 
   ForceSettings settings_;
-  SimTime first_;            // of nodes_
+  SimTime first_;            // time of the first node
   std::vector<Node> nodes_;  // every node_s
 };
 

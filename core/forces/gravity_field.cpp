@@ -90,7 +90,7 @@ Vec<Itrs> GravityField::acceleration_m_per_s2(const Vec<Itrs>& position_m) const
     if (n >= 2) add_degree(n, now.data(), &c_[first], &s_[first], &derivative_[first], sums);
   }
   double x = 0, y = 0, z = 0, outwards = 0;
-  double cosine = 1, sine = 0, cosine_before = 0, sine_before = 0;  // of (up.x + i up.y)^m
+  double cosine = 1, sine = 0, cosine_before = 0, sine_before = 0;  // parts of (up.x + i up.y)^m
   for (int m = 0; m <= degree_; ++m) {
     const std::size_t k = std::size_t(m);
     x += m * (sums.c[k] * cosine_before + sums.s[k] * sine_before);

@@ -21,7 +21,7 @@ class GravityField {
   Vec<Itrs> acceleration_m_per_s2(const Vec<Itrs>& position_m) const;
 
  private:
-  // Of all orders m of a degree n, one after another: factors of the recursion, coefficients, and
+  // For all orders m of a degree n, one after another: factors of the recursion, coefficients, and
   // the factor of the derivative.
   struct Row {
     std::size_t first = 0;  // place of order 0

@@ -11,11 +11,11 @@ struct Rtn {};
 /// A change of velocity at once, or a burn of constant thrust.
 struct Manoeuvre {
   double at_s = 0.0;                // simulation time of it, or of its start
-  Vec<Rtn> delta_v_m_per_s;         // of a change at once
-  double duration_s = 0.0;          // of a burn; 0: a change at once
+  Vec<Rtn> delta_v_m_per_s;         // a change at once
+  double duration_s = 0.0;          // a burn lasts so long; 0: a change at once
   double thrust_n = 0.0;            // >= 0
   double mass_kg = 0.0;             // at its start, > 0
-  Vec<Rtn> direction;               // of the acceleration, unit; it turns with the axes
+  Vec<Rtn> direction;               // unit, along the acceleration; it turns with the axes
   double specific_impulse_s = 0.0;  // 0: the mass does not change
 
   double end_s() const { return at_s + duration_s; }

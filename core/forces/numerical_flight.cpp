@@ -13,7 +13,7 @@ namespace {
 
 constexpr int knots_of_polynomial = 6;  // Hermite, degree 11
 constexpr double longest_turn =
-    0.35;  // of a step, in sqrt(r^3 / gm): polynomials are good to 1e-6 m
+    0.35;  // longest step in units of sqrt(r^3 / gm): polynomials are good to 1e-6 m
 constexpr double shortest_step_s = 1e-6;
 constexpr int max_steps = 5'000'000;
 constexpr double beyond_edge_s = 1e-3;  // a step ends that far beyond the edge of a shadow

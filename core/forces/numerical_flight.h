@@ -10,7 +10,7 @@
 namespace dmise {
 
 struct NumericalFlightSettings {
-  double position_tolerance_m = 1e-5;  // of one step, > 0
+  double position_tolerance_m = 1e-5;  // error of one step, > 0
   Ellipsoid ellipsoid{};               // a path ends on it
 };
 

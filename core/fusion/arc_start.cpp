@@ -15,7 +15,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t max_per_exposure = 16;  // the brightest
-constexpr std::size_t max_fits = 2;           // of one tick, each some 30 ms
+constexpr std::size_t max_fits = 2;           // in one tick, each some 30 ms
 constexpr int max_skipped = 3;                // exposures in a row in which it was not found
 constexpr double shortest_arc_gap_s = 1.0;
 constexpr double fastest_rad_per_s = 0.035;  // 2 deg/s: 8 km/s at 230 km
@@ -24,12 +24,12 @@ constexpr double arc_sigmas = 5.0;
 constexpr double gravity_over_speed = 9.8 / 3000.0, range_rate_over_range = 0.005;
 /// No orbit is tried if more chance arcs as long and as smooth are expected to end in a source.
 constexpr double most_by_chance = 1e-3;
-constexpr double largest_range_sigma = 0.1;  // of the range: a filter takes no wider ellipse
+constexpr double largest_range_sigma = 0.1;  // relative: a filter takes no wider ellipse
 constexpr double as_likely = 9.2;            // chi-square by which another orbit must be worse
 constexpr OrbitLimits limits{.min_perigee_m = 6.45e6, .largest_apogee_m = 1e8};
 
-/// Of one sensor's sources. Those of an exposure have each its own time where rows are exposed one
-/// after the other.
+/// Orders one sensor's sources. Those of an exposure have each its own time where rows are exposed
+/// one after the other.
 auto order(const LooseSource& s) { return std::tie(s.frame, seen(s).time, seen(s).detection_id); }
 
 /// Where a path continues at an earlier time, and how far off it may be.
@@ -186,7 +186,7 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
     for (const LooseSource& s : kept) {
       if (s.frame != kept.back().frame) continue;
       for (const Arc& arc : arcs_to(s, kept)) {
-        // Of a growing arc not every length is tried: 4, 5, 6, 8, 11, 15, 20, ...
+        // Not every length of a growing arc is tried: 4, 5, 6, 8, 11, 15, 20, ...
         int wanted = settings_.arc_exposures;
         while (wanted < int(arc.size())) wanted += std::max(1, wanted / 3);
         if (wanted != int(arc.size())) continue;

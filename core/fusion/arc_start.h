@@ -29,7 +29,7 @@ class ArcStart {
 
   const ForceModel& forces_;
   FusionSettings settings_;
-  std::map<std::string, std::vector<LooseSource>> loose_;  // of each sensor, by time
+  std::map<std::string, std::vector<LooseSource>> loose_;  // by sensor, each by time
 };
 
 }  // namespace dmise

@@ -12,13 +12,13 @@
 namespace dmise {
 namespace {
 
-constexpr double coarse_sigmas = 5.0;       // of the coarse search
+constexpr double coarse_sigmas = 5.0;       // reach of the coarse search
 constexpr double largest_radius_rad = 0.2;  // tracks that are known worse are not looked for
 constexpr double min_radius_rad = 1e-4;
 constexpr double earth_m = 6.35e6;
 constexpr double edge_px = 4.0;             // within which a source may be missed
 constexpr double least_looked = 0.05;       // probability of detection that makes a look
-constexpr double certain_sigma_rad = 0.01;  // of a place that can be missed
+constexpr double certain_sigma_rad = 0.01;  // places known better than this can be missed
 
 bool behind_earth(const Vec<Gcrs>& sensor_m, const Vec<Gcrs>& direction, double range_m) {
   const double along = -dot(sensor_m, direction);
@@ -103,7 +103,7 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
   const double p = settings_.detection_probability;
   const double alone = 2 * std::log(false_per_sr * (1 - p) / p);
   std::vector<Pairing> pairs;
-  std::vector<double> likelihoods;  // of each pair: the density with which it shows a source [1/sr]
+  std::vector<double> likelihoods;  // by pairs: the density with which one shows a source [1/sr]
   std::vector<std::pair<SimTime, PredictedDirection>> known(all.size());
   std::vector<signed char> lit(all.size(), -1);
   const auto is_lit = [&](std::size_t k) {

@@ -15,14 +15,14 @@ struct CueSettings {
   double slew_deg_per_s2 = 0.0;  // its acceleration; 0: it has its speed at once
   double settle_s = 2.0;         // after a slew, >= 0
   MountKind mount = MountKind::great_circle;
-  // Of an altazimuth mount's azimuth axis, the two above being those of elevation; 0: as those.
+  // The azimuth axis of an altazimuth mount, the two above being those of elevation; 0: as those.
   double azimuth_deg_per_s = 0.0, azimuth_deg_per_s2 = 0.0;
   // From north through east, with whole turns: more than 360 deg wide, or some sky is out of reach.
   std::array<double, 2> azimuth_range_deg{-270.0, 270.0};
   double min_elevation_deg = 20.0, greatest_elevation_deg = 90.0;
   double sun_exclusion_deg = 30.0, moon_exclusion_deg = 5.0;  // from their middles
   int exposures = 3;                                          // most of one task, >= 1
-  double sigma_arcsec = 1.0;                                  // of a detection along each axis, > 0
+  double sigma_arcsec = 1.0;                                  // error of a place on each axis, > 0
   double limiting_magnitude = 14.0;
   double min_gain_nats = 0.1;  // a task that is expected to tell less is not given
 };

@@ -15,7 +15,7 @@ struct CuedSensor {
   Site site;
   CueSettings cue;
   double park_azimuth_deg = 180.0, park_elevation_deg = 60.0;  // where it stands at first
-  double half_angle_rad = 0.0;  // of the largest circle in its field, > 0
+  double half_angle_rad = 0.0;  // the largest circle in its field, > 0
   double exposure_s = 0.0, cadence_s = 0.0, first_exposure_s = 0.0;
 
   /// When frame `number`, from 1, begins.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double together_s = 2.0;        // exposures that share a prediction of the catalogue
 constexpr double prior_before_s = 60.0;   // that late detections may precede the first
-constexpr double same_gate_d2 = 30.0;     // of two states of one object, 3 degrees of freedom
+constexpr double same_gate_d2 = 30.0;     // between two states of one object, 3 degrees of freedom
 constexpr double gone = 0.02;             // probability of existence at which a track ends
 constexpr double certain = 0.99;          // and with which it may be confirmed
 constexpr double around_run_s = 86400.0;  // that kept orbits reach beyond the run at either end

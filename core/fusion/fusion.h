@@ -81,7 +81,7 @@ class Fusion {
   TrackStart start_;
   ArcStart arcs_;
   std::vector<std::unique_ptr<LiveTrack>> tracks_;  // by id
-  std::vector<LiveTrack*> track_of_;                // of each object, null: none
+  std::vector<LiveTrack*> track_of_;                // for each object; null: none
   std::unique_ptr<KeptOrbits> kept_;                // null: none are kept
   // Objects beyond the catalogue, by the track with which each began.
   std::vector<std::uint32_t> new_objects_;

@@ -11,8 +11,8 @@ struct FusionSettings {
   // and across the orbit: at the epoch [m], and by which they grow with the age [m/day].
   std::array<double, 3> catalogue_sigma_m{300, 1000, 300};
   std::array<double, 3> catalogue_sigma_m_per_day{100, 1000, 100};
-  double gate_d2 = 18.4;               // of a pair, chi-square of 2 degrees of freedom; 18.4: 1e-4
-  double detection_probability = 0.9;  // of an object well above the limit, (0, 1)
+  double gate_d2 = 18.4;               // for a pair, chi-square of 2 degrees of freedom; 18.4: 1e-4
+  double detection_probability = 0.9;  // for an object well above the limit, (0, 1)
   double false_alarms_per_frame = 1.0;
   double lost_after_s = 900.0;   // without a detection, of a confirmed track
   double tentative_s = 120.0;    // without a detection, of a tentative track

@@ -32,7 +32,7 @@ struct LiveTrack {
   std::optional<std::size_t> object;  // index in the catalogue
   int min_detections = 0;             // that confirm it
   TrackStatus status = TrackStatus::tentative;
-  double log_odds = 0.0;  // of its existence
+  double log_odds = 0.0;  // that it exists
   int detections = 0;
   SimTime last_seen;
   MeanBrightness brightness;

@@ -15,7 +15,7 @@ namespace dmise {
 namespace {
 
 const PropagationSettings propagation{.position_tolerance_m = 1e-2};
-constexpr int max_turns = 12;              // of the time of the slew and where it leads
+constexpr int max_turns = 12;              // rounds of the slew's time and where it leads
 constexpr double settled_within_s = 1e-3;  // between two of them
 constexpr double least_lit = 0.5;          // fraction of the Sun's disc
 constexpr double path_step_s = 10.0;       // cubic: to 3 mm

@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t max_plans = 24;  // of a sensor at once: the best by `rough_rate`
+constexpr std::size_t max_plans = 24;  // for a sensor at once: the best by `rough_rate`
 constexpr int heard_after_ticks = 2;
 constexpr double path_margin_s = 10.0;  // before and after exposures, for clocks that are wrong
 

@@ -10,7 +10,7 @@ namespace dmise {
 /// can see, the one that is expected to tell most in the time that it takes: half the logarithm of
 /// the determinant by which its exposures shrink the covariance, times the probabilities that the
 /// object exists, lies in the field and is detected, over the time to slew, settle and expose.
-/// What other sensors have been told to observe counts as known. Of several free sensors the one
+/// What other sensors have been told to observe counts as known. Among several free sensors the one
 /// with the best choice goes first. Ties go to the name, and to the lower id.
 ///
 /// The result depends on times and targets alone: the same calls give the same tasks.

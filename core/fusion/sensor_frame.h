@@ -24,7 +24,7 @@ struct SensorFrame {
   SimTime time;  // mid exposure
   Vec<Gcrs> sensor_m;
   Vec<Gcrs> axis;                   // unit: the middle of the cone that contains the field
-  double half_angle_rad = 0.0;      // of the cone, (0, pi]
+  double half_angle_rad = 0.0;      // half the cone's opening, (0, pi]
   std::optional<Wcs> wcs;           // with columns and rows tells what is in the frame
   int columns = 0, rows = 0;        // without a wcs the cone is the field
   double limiting_magnitude = 0.0;  // V-solar, as those of `sources`

@@ -11,7 +11,7 @@ namespace dmise {
 /// all cells that its radius touches, so that a search looks at one.
 class SkyCells {
  public:
-  /// Of the cone about `axis` (unit) with `half_angle_rad`, (0, pi].
+  /// Covers the cone about `axis` (unit) with `half_angle_rad`, (0, pi].
   SkyCells(const Vec<Gcrs>& axis, double half_angle_rad);
 
   /// `id` may be of a source within `radius_rad` of `direction` (unit).
@@ -30,7 +30,7 @@ class SkyCells {
   std::uint32_t cell_of(double x, double y, bool behind) const;
 
   Vec<Gcrs> x_, y_, z_;
-  double reach_;  // of the coordinates x and y, which are orthographic
+  double reach_;  // largest coordinate x or y, which are orthographic
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> begin_, ids_;
 };

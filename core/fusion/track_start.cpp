@@ -15,9 +15,9 @@ constexpr double min_baseline_m = 10e3;
 constexpr double shortest_gap_s = 1.0;    // between two places of one orbit
 constexpr double min_perigee_m = 6.45e6;  // 70 km above the ground
 constexpr double largest_apogee_m = 1e8;
-constexpr double start_sigmas = 4.0;     // of coarse tests
-constexpr double longest_miss_m = 50e3;  // of two lines
-constexpr double largest_chi2 = 13.8;    // of an orbit of 2 degrees of freedom: 1e-3
+constexpr double start_sigmas = 4.0;     // reach of coarse tests
+constexpr double longest_miss_m = 50e3;  // between two lines
+constexpr double largest_chi2 = 13.8;    // for an orbit of 2 degrees of freedom: 1e-3
 
 auto order(const LooseSource& s) {
   return std::tie(seen(s).time, seen(s).sensor, seen(s).detection_id);

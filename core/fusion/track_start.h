@@ -13,8 +13,8 @@ namespace dmise {
 /// A detection that no track took.
 struct LooseSource {
   SeenSource source;
-  double false_per_sr = 0.0;  // of its frame
-  std::uint32_t frame = 0;    // of its sensor
+  double false_per_sr = 0.0;  // false alarms in its frame
+  std::uint32_t frame = 0;    // counted by its sensor
 };
 
 inline const AngleObservation& seen(const LooseSource& s) { return s.source.observation; }

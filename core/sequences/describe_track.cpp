@@ -36,7 +36,7 @@ Jacobian sky_by_pixels(const Wcs& wcs, PixelPosition at, const SkyAxes& axes) {
   return {dot(x, axes.east), dot(y, axes.east), dot(x, axes.north), dot(y, axes.north)};
 }
 
-/// Of place and rate on the sky, lower triangle by rows.
+/// Covariance of place and rate on the sky, lower triangle by rows.
 std::array<double, 10> on_the_sky(const MotionCovariance& c, const Jacobian& j) {
   std::array<double, 10> out{};
   std::size_t at = 0;

@@ -12,12 +12,12 @@
 namespace dmise {
 namespace {
 
-constexpr double max_trial_rates = 4000;       // of the range by default
-constexpr double max_asked_trial_rates = 1e6;  // of one that was asked for
-constexpr double candidate_margin = 1.0;       // of a sum at whole pixels
-constexpr double min_share_of_steady = 0.62;   // of the threshold, without the best frames
+constexpr double max_trial_rates = 4000;       // in the range by default
+constexpr double max_asked_trial_rates = 1e6;  // in a range that was asked for
+constexpr double candidate_margin = 1.0;       // SNR that a sum at whole pixels may lack
+constexpr double min_share_of_steady = 0.62;   // SNR without the best frames, over the threshold
 constexpr std::size_t min_frames_for_two = 8, min_frames_for_one = 5;
-constexpr double min_share_of_each = 0.3;  // of the mean light, in each of a few frames
+constexpr double min_share_of_each = 0.3;  // each of a few frames has this share of the mean light
 constexpr double hidden_widths = 2.0;      // FWHM around what was found
 
 MotionRange range_of(const FilteredSequence& sequence, const Registration& registration,

@@ -35,11 +35,11 @@ struct SequencePosition {
 /// An object that moves evenly over a sequence.
 struct SequenceTrack {
   Detection detection;    // in the frame that is nearest to the middle of the sequence
-  FrameHeader header;     // of that frame
+  FrameHeader header;     // header of that frame
   bool by_stack = false;  // no single frame shows it
   // East and north of the sky, at the detection's time; the place in pixels of the middle frame.
   double rate_ra_rad_per_s = 0.0, rate_dec_rad_per_s = 0.0;
-  std::array<double, 10> covariance{};  // of place and rate, lower triangle by rows [rad2 ..]
+  std::array<double, 10> covariance{};  // place and rate, lower triangle by rows [rad2 ..]
   PixelPosition rate_px_per_s;
   std::vector<SequencePosition> positions;  // by time
 };

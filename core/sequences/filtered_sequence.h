@@ -40,7 +40,7 @@ struct FilteredLight {
 struct FilteredSequence {
   int columns = 0, rows = 0;
   std::size_t reference = 0;  // the frame in the middle
-  double sigma_px = 1.0;      // of the filter, one for all frames
+  double sigma_px = 1.0;      // width of the filter, one for all frames
   double exposure_s = 1.0;
   std::vector<FilteredLight> frames;
 

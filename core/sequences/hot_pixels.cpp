@@ -10,7 +10,7 @@ namespace {
 
 constexpr double min_sigma_px = 0.7;       // below, stars are as sharp
 constexpr double min_excess_sigmas = 4.5;  // over what the neighbours allow
-constexpr double median_noise = 1.25;      // of many values, over that of their mean
+constexpr double median_noise = 1.25;      // noise of a median over a mean's, for many values
 
 constexpr std::size_t min_unusable = 2, frames_per_unusable = 5;
 

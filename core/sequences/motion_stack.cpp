@@ -13,10 +13,10 @@ namespace dmise {
 namespace {
 
 constexpr int cell_px = 64;
-constexpr double step_sigmas = 2.5;  // of rates, over the whole sequence
+constexpr double step_sigmas = 2.5;  // between rates, over the whole sequence
 constexpr double max_false = 0.001;  // a sequence, of normal noise: that of frames has more tails
 constexpr std::size_t max_of_cell = 30, max_candidates = 2000;
-constexpr std::size_t batch = 64;  // of cells between two calls of `progress`
+constexpr std::size_t batch = 64;  // cells between two calls of `progress`
 
 /// Terms of the sum at each pixel of a frame: weight times SNR, and square of the weight. Zeros
 /// beside and beyond.
@@ -39,7 +39,7 @@ struct Terms {
         weight2[place(x, y)] = w * w;
       }
   }
-  /// Of `cell_px` values from (x, y) on.
+  /// Where `cell_px` values from (x, y) on begin.
   std::size_t place(long x, long y) const {
     if (y < 0 || y >= rows || x < -cell_px || x > columns) return std::size_t(rows) * stride;
     return std::size_t(y) * stride + std::size_t(x + cell_px);
@@ -132,7 +132,7 @@ class StackCell {
   PixelPosition middle_;
   std::vector<LinearMap> maps_;
   std::vector<std::array<long, 2>> shifts_;
-  std::vector<const float*> lights_, weights_;  // of the frames' rows
+  std::vector<const float*> lights_, weights_;  // rows of the frames
   decltype(&sse2::stack_rows) kernel_;
   std::array<float, size> best_{};
   std::array<std::uint32_t, size> rate_{};

@@ -10,7 +10,7 @@ namespace dmise {
 namespace {
 
 constexpr int cell_px = 64;     // over which the map between two frames is linear
-constexpr int segment_px = 16;  // of a row, over which it is a shift
+constexpr int segment_px = 16;  // part of a row over which it is a shift
 constexpr double clip_sigmas = 3.0, light_error = 0.1;
 constexpr std::size_t min_others = 3;
 // The sky of a frame is that of others before and after a gap of a fifth of the sequence.
@@ -179,7 +179,7 @@ class SkySubtraction {
   }
 
  private:
-  /// Of all other frames at the pixels of a cell, frame by frame.
+  /// Light of all other frames at the pixels of a cell, frame by frame.
   std::vector<float> samples(const Cell& cell) const {
     const std::size_t n = sequence_.frames.size();
     std::vector<float> out(n * cell_px * cell_px, std::numeric_limits<float>::quiet_NaN());

@@ -24,7 +24,7 @@ constexpr double outlier_scatters = 3.5, min_reach_px = 0.3;
 
 struct Pair {
   PixelPosition from, to;
-  double ratio;  // of light
+  double ratio;  // light in the frame over that in the reference
 };
 
 double distance_px(PixelPosition a, PixelPosition b) {
@@ -104,7 +104,7 @@ LinearMap fitted(const std::vector<Pair>& pairs) {
 double scatter_px(const LinearMap& map, const std::vector<Pair>& pairs) {
   std::vector<double> off;
   for (const Pair& pair : pairs) off.push_back(distance_px(map(pair.from), pair.to));
-  return off.empty() ? 0.0 : median_of(off) / 1.1774;  // of a Rayleigh distribution
+  return off.empty() ? 0.0 : median_of(off) / 1.1774;  // a Rayleigh distribution has this median
 }
 
 struct StarMatch {

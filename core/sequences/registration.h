@@ -36,7 +36,7 @@ class Registration {
   LinearMap around(std::size_t from, std::size_t to, PixelPosition place, double reach_px) const;
   /// Light of stars in a frame over that in the reference frame.
   double transmission(std::size_t frame) const { return maps_[frame].transmission; }
-  /// Of frames that share too few stars, and are registered by their world coordinates alone.
+  /// Names frames that share too few stars, and are registered by their world coordinates alone.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -47,7 +47,7 @@ class Registration {
   PixelPosition expected(std::size_t frame, PixelPosition reference) const;
   void fit(const FilteredSequence& sequence, std::size_t frame, const std::string& name);
 
-  std::vector<const Wcs*> wcs_;  // of the frames; empty: they have none
+  std::vector<const Wcs*> wcs_;  // one for each frame; empty: they have none
   std::size_t reference_;
   std::vector<Map> maps_;
   std::vector<std::string> notes_;

@@ -10,7 +10,7 @@ namespace dmise {
 
 /// A frame of a sequence: exposures of one sensor, of one length, that see one field.
 struct SequenceFrame {
-  std::string name;  // of its file, for messages
+  std::string name;  // file name, for messages
   CountImage counts;
   FrameHeader header;       // solved, where its stars were solved
   PixelMask unusable = {};  // pixels without a value; empty: all have one

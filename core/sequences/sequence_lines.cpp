@@ -63,7 +63,7 @@ std::string sequence_of(const SequenceTrack& track, std::uint32_t number) {
 std::string to_json(const SequenceTrack& track, std::uint32_t number) {
   const UtcText utc = [&](SimTime time) { return utc_in_frame(track.header, time); };
   std::string line = to_json(track.detection, utc, track.header.unknown);
-  line.pop_back();  // of the object's end
+  line.pop_back();  // the brace that ends the object
   return line + ",\"sequence\":" + sequence_of(track, number) + "}";
 }
 

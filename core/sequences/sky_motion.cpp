@@ -9,7 +9,7 @@ namespace dmise {
 namespace {
 
 constexpr double max_trail_widths = 2.0, min_way_widths = 2.0;
-constexpr double max_scatter = 0.1;  // of an even motion, of its length
+constexpr double max_scatter = 0.1;  // from an even motion, over its length
 
 /// How the middle of the detector moves over the sky; 0 where it rests or was moved by hand.
 PixelPosition detector_rate(const FilteredSequence& sequence, const Registration& registration) {

@@ -25,7 +25,7 @@ struct SkyMotion {
 
 /// Motions that are searched for: rates within a circle, faster than stars.
 struct MotionRange {
-  PixelPosition middle;       // of the detector over the sky, where that is even [px/s]
+  PixelPosition middle;       // motion of the detector over the sky, where it is even [px/s]
   double max_px_per_s = 0.0;  // against the middle
   double min_px_per_s = 0.0;  // against the stars
   double scale_rad_per_px = 0.0;

@@ -13,18 +13,18 @@ namespace {
 constexpr int max_steps = 20, first_steps = 5;  // before frames that disagree are left out
 constexpr double max_displaced_chi2 = 14.0;     // 2 degrees of freedom: 1 in 1000 by chance
 constexpr double max_step_px = 0.7, converged_px = 1e-3;
-constexpr double max_way_widths = 3.0;     // of a fit from its start, FWHM
-constexpr double place_error_px = 0.02;    // of a frame: registration, shape of pixels
+constexpr double max_way_widths = 3.0;     // from the start of a fit to its end, FWHM
+constexpr double place_error_px = 0.02;    // in each frame: registration, shape of pixels
 constexpr double shown_snr = 6.0;          // from which on a frame's own place is measured
 constexpr double linear_px = 8.0;          // over which a map between frames is measured
-constexpr double neglected_orders = 25.0;  // of the covariance, over the square of the SNR
+constexpr double neglected_orders = 25.0;  // growth of the covariance, over the square of the SNR
 constexpr double min_seen_snr = 0.5;       // that a frame of a track must add to be of use
 
 using Symmetric = std::array<double, 3>;  // xx, xy, yy
 
 /// How a point's SNR falls off around its place, and how noise slopes there.
 struct Response {
-  Symmetric curvature{};  // of a point of SNR 1 [1/px2]
+  Symmetric curvature{};  // for a point of SNR 1 [1/px2]
   double slope_variance = 0.0;
 };
 
@@ -115,7 +115,7 @@ std::vector<SnrAt> seen_by(const std::vector<MovingLight>& light,
   return seen;
 }
 
-/// Of a symmetric matrix in a frame, by axes of the reference frame.
+/// Turns a symmetric matrix from the axes of a frame to those of the reference frame.
 Symmetric in_reference(const Symmetric& m, const std::array<double, 4>& a) {
   const double xx = m[0] * a[0] + m[1] * a[2], xy = m[0] * a[1] + m[1] * a[3],
                yx = m[1] * a[0] + m[2] * a[2], yy = m[1] * a[1] + m[2] * a[3];

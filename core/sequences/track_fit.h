@@ -12,13 +12,13 @@ namespace dmise {
 /// A track in one frame.
 struct TrackPoint {
   std::size_t frame = 0;
-  PixelPosition place;    // of the motion, in the frame
-  double snr = 0.0;       // of a point there
-  double expected = 0.0;  // of the track's light
+  PixelPosition place;    // where the motion is, in the frame
+  double snr = 0.0;       // for a point there
+  double expected = 0.0;  // by the track's light
   bool used = false;      // by the fit: the place is known, and not by chance on something brighter
-  // Of its light alone, where the frame shows it; else that of the motion.
+  // Place by its light alone, where the frame shows it; else that of the motion.
   std::optional<PixelPosition> measured;
-  std::array<double, 3> covariance_px2{};  // of `measured`: var x, cov xy, var y
+  std::array<double, 3> covariance_px2{};  // errors of `measured`: var x, cov xy, var y
 };
 
 /// Covariance of place, rate and acceleration of a motion (x, y, x', y', x'', y'').
@@ -29,7 +29,7 @@ struct MovingTrack {
   SkyMotion motion;
   MotionCovariance covariance{};
   double amplitude_e = 0.0;  // through the filter, in the reference frame
-  double snr = 0.0;          // of all frames together
+  double snr = 0.0;          // all frames together
   std::vector<TrackPoint> points;
   std::size_t used() const;
 };
@@ -52,8 +52,8 @@ struct SnrAt {
 };
 SnrAt snr_at(const MovingLight& light, PixelPosition place);
 
-/// Fits motion and light by maximum likelihood to the frames through the matched filter. The prior
-/// of the acceleration is that of the range. Empty if
+/// Fits motion and light by maximum likelihood to the frames through the matched filter. The range
+/// gives the prior of the acceleration. Empty if
 /// it leaves the start by more than a few widths of the PSF or is in fewer than three frames.
 std::optional<MovingTrack> fit_track(const TrackScene& scene, const SkyMotion& start);
 

@@ -10,9 +10,9 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t max_points = 400;  // of a frame
-constexpr double max_pairs = 2e7;        // of points of all frames
-constexpr double min_share = 0.4;        // of the frames that have a point on a motion
+constexpr std::size_t max_points = 400;  // in a frame
+constexpr double max_pairs = 2e7;        // pairs of points of all frames
+constexpr double min_share = 0.4;        // frames that have a point on a motion, over all
 constexpr double gate_widths = 1.0;      // FWHM between a point and a motion through two others
 
 bool is_peak(const MovingSnr& snr, int x, int y) {

@@ -8,7 +8,7 @@ namespace dmise {
 /// A point that moves or flashes, in one frame.
 struct MovingPoint {
   PixelPosition place;      // in the frame
-  PixelPosition reference;  // of the same sky in the reference frame
+  PixelPosition reference;  // where the reference frame has the same sky
   double snr = 0.0;
 };
 

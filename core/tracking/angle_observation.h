@@ -19,12 +19,12 @@ namespace dmise {
 /// sensor_m. Aberration is not in it.
 /// Some sensors measure the length of that line as well, or its derivative by `time`.
 struct AngleObservation {
-  SimTime time;                             // of reception
+  SimTime time;                             // when the light was received
   Vec<Gcrs> sensor_m;                       // where the line of sight begins, at `time`
   Vec<Gcrs> direction;                      // unit
   std::array<double, 3> covariance_rad2{};  // var east, cov, var north on the sky: ra cos dec, dec
   std::string sensor;                       // name of the sensor
-  std::string detection_id;                 // of the detection, "<sensor>/<frame>/<index>"
+  std::string detection_id;                 // "<sensor>/<frame>/<index>"
   std::optional<MeasuredNumber> range_m = {}, range_rate_m_per_s = {};
   Vec<Gcrs> sensor_m_per_s = {};  // with range_rate_m_per_s
 
@@ -50,8 +50,8 @@ Eigen::Vector2d angles_between(const Vec<Gcrs>& from, const Vec<Gcrs>& to);
 
 /// The line of sight of a detection. On the ground it begins `refraction_offset_m` beside the
 /// sensor, where the line outside the air begins, and neither the mean refraction parallax nor its
-/// variance are in it (docs/wire.md, Directions of detections). Of a streak it is the middle of
-/// the exposure. Refuses a detection whose numbers are not finite or whose covariance is not
+/// variance are in it (docs/wire.md, Directions of detections). For a streak it is that of mid
+/// exposure. Refuses a detection whose numbers are not finite or whose covariance is not
 /// positive definite.
 Outcome<AngleObservation> angle_observation(const Detection& detection);
 

@@ -26,7 +26,7 @@ struct BatchFit {
   OrbitEstimate estimate;                      // at the starting state's time
   std::vector<Eigen::Vector2d> residuals_rad;  // observed - computed, east, north, in input order
   std::vector<bool> taken;                     // false: left out as an outlier
-  double chi2 = 0.0;                           // of those taken
+  double chi2 = 0.0;                           // by those taken
   int degrees_of_freedom = 0;
   int iterations = 0;
 };

@@ -33,7 +33,7 @@ class OrbitFilter {
   ~OrbitFilter();
   OrbitFilter(OrbitFilter&&) noexcept;
 
-  /// Of the last observation that was taken.
+  /// The time of the last observation that was taken.
   SimTime time() const;
   OrbitEstimate estimate() const;
 

@@ -11,7 +11,7 @@ namespace dmise {
 /// From a sensor to where an object was when its light left.
 struct LineOfLight {
   Eigen::Vector3d line_m;            // from the sensor
-  Eigen::Vector3d velocity_m_per_s;  // of the object then
+  Eigen::Vector3d velocity_m_per_s;  // the object's then
   double range_m = 0.0;
   double light_time_s = 0.0;
 };

@@ -10,8 +10,8 @@ namespace dmise {
 /// Elements of SGP4, and how far its path is from the one that they stand for.
 struct MeanElementsFit {
   MeanElements elements;
-  double rms_m = 0.0;    // of the distances at the nodes of the fit
-  double worst_m = 0.0;  // of them
+  double rms_m = 0.0;    // distances at the nodes of the fit
+  double worst_m = 0.0;  // largest of them
 };
 
 /// Elements whose SGP4 path is nearest to that of `state` under `forces`, by least squares over 25

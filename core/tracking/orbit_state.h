@@ -44,8 +44,8 @@ bool is_sane(const OrbitEstimate& estimate);
 /// Columns: the radial, transverse and normal axes of its orbit.
 Eigen::Matrix3d orbit_axes(const OrbitState& state);
 
-/// Smallest and largest distance from the Earth's centre on the osculating conic [m]; the apogee
-/// of an orbit that does not return is infinite.
+/// Smallest and largest distance from the Earth's centre on the osculating conic [m]; an orbit
+/// that does not return has an infinite apogee.
 double perigee_m(const OrbitState& state);
 double apogee_m(const OrbitState& state);
 

@@ -8,12 +8,12 @@ namespace dmise {
 
 /// Where a sensor will see an object.
 struct PredictedDirection {
-  SimTime time;                                               // of reception
+  SimTime time;                                               // when the light is received
   Vec<Gcrs> direction;                                        // unit, without aberration
   Eigen::Matrix2d covariance_rad2 = Eigen::Matrix2d::Zero();  // east, north; of the orbit alone
   double range_m = 0.0;                                       // to where the light left
-  double range_rate_m_per_s = 0.0;                            // of an observer at rest
-  Vec<Gcrs> rate_rad_per_s;  // of `direction`, perpendicular to it, for an observer at rest
+  double range_rate_m_per_s = 0.0;                            // for an observer at rest
+  Vec<Gcrs> rate_rad_per_s;  // change of `direction`, perpendicular to it, for an observer at rest
 };
 
 /// To first order in the covariance. The estimate must be within a few seconds of `time`: it is
@@ -26,7 +26,7 @@ struct Innovation {
   Eigen::Vector2d residual_rad = Eigen::Vector2d::Zero();     // east, north
   Eigen::Matrix2d covariance_rad2 = Eigen::Matrix2d::Zero();  // S: of prediction and observation
   double d2 = 0.0;              // residual' S^-1 residual, chi-square of 2 degrees of freedom
-  double log_likelihood = 0.0;  // of the residual [ln(1/rad^2)]
+  double log_likelihood = 0.0;  // logarithm of the residual's density [ln(1/rad^2)]
 };
 
 Innovation innovation_of(const PredictedDirection& predicted, const AngleObservation& observed);

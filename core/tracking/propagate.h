@@ -9,7 +9,7 @@ namespace dmise {
 
 /// Dormand-Prince 5(4) with steps by the estimated error of each.
 struct PropagationSettings {
-  double position_tolerance_m = 1e-5;  // of one step, > 0
+  double position_tolerance_m = 1e-5;  // error of one step, > 0
   int max_steps = 200000;
 };
 

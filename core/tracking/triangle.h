@@ -4,8 +4,8 @@
 
 namespace dmise {
 
-/// Turns the rows of `stack` by Householder's reflections until nothing is left below the diagonal
-/// of its first `Turned` columns: stack' stack stays the same. Sizes are fixed: no heap.
+/// Turns the rows of `stack` by Householder's reflections until its first `Turned` columns have
+/// nothing below the diagonal: stack' stack stays the same. Sizes are fixed: no heap.
 template <int Turned, int Rows, int Columns>
 void triangularise(Eigen::Matrix<double, Rows, Columns>& stack) {
   for (int j = 0; j < Turned; ++j) {

@@ -45,7 +45,7 @@ ColumnOffsets offsets_of(const std::vector<float>& values, const std::vector<flo
 
 MeasuredValue root_of(MeasuredValue variance) {
   const double root = std::sqrt(std::max(variance.value, 0.0));
-  // Of a variance that noise hides, the deviation of its root is that of the variance's own size.
+  // If noise hides the variance, the deviation of its root is that of the variance's own size.
   const double sigma =
       root > 0 ? variance.sigma / (2 * root) : std::sqrt(std::max(variance.sigma, 0.0));
   return {root, std::min(sigma, std::sqrt(std::max(variance.sigma, 0.0)))};

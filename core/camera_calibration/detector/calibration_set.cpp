@@ -14,7 +14,7 @@ namespace {
 
 constexpr int min_side_px = 64;
 constexpr double longest_bias_s = 1e-3;
-constexpr double min_star_share = 3e-5;  // of pixels that are bright beside a bright one
+constexpr double min_star_share = 3e-5;  // pixels that are bright beside a bright one, over all
 
 /// The share of pixels that are far above the level and have a bright neighbour, as in stars; hot
 /// pixels have none.

@@ -20,7 +20,7 @@ struct CalibrationFrame {
   int plane = 1;
   FrameKind kind = FrameKind::unknown;
   std::optional<double> exposure_s, temperature_c;
-  double level = 0.0, noise = 0.0;  // of its pixels: median, and from pixel to pixel [DN]
+  double level = 0.0, noise = 0.0;  // pixels' median, and noise from pixel to pixel [DN]
   double greatest = 0.0;            // value of a pixel
   std::size_t greatest_pixels = 0;  // that have it
 
@@ -69,7 +69,7 @@ class CalibrationSet {
   FrameChoice choice_;
   std::vector<CalibrationFrame> frames_[5];
   std::vector<CalibrationFrame> unsorted_;
-  std::vector<double> star_shares_;  // of unsorted frames
+  std::vector<double> star_shares_;  // one for each unsorted frame
   int columns_ = 0, rows_ = 0;
   bool mosaic_ = false, whole_ = true;
   double step_ = 0.0, zero_ = 0.0;  // common to all; 0: not known yet

@@ -11,7 +11,7 @@ namespace dmise {
 enum class ValueOrigin {
   measured,       // from the frames
   insignificant,  // measured, but hidden in its deviation: the camera file leaves it out
-  header,         // of a frame
+  header,         // from the header of a frame
   stated,         // by the user
   assumed         // nothing tells it
 };
@@ -19,10 +19,10 @@ const char* name_of(ValueOrigin origin);
 
 /// One value of a calibrated camera.
 struct CameraQuantity {
-  std::string key;  // of the camera file, as "detector.gain_e_per_dn"
+  std::string key;  // in the camera file, as "detector.gain_e_per_dn"
   std::string unit;
   double value = 0.0;
-  std::optional<double> sigma;  // of a measured one
+  std::optional<double> sigma;  // only a measured one has it
   int frames = 0;               // by which it was measured
   ValueOrigin origin = ValueOrigin::measured;
   std::string how;  // short, for the comment beside it

@@ -152,7 +152,7 @@ DarkMeasurement measure_dark(const CalibrationSet& set, const std::vector<Calibr
   out.threshold = hot_sigmas * sigma;
   const double most = saturation_dn > 0 ? 0.9 * saturation_dn / out.longest_s : HUGE_VAL;
   const double level = mean_near(rates, all.level, hot_sigmas * sigma);
-  constexpr double uncertain_share = 0.5;  // of the coupling
+  constexpr double uncertain_share = 0.5;  // error of the coupling, relative
   measure_hot(rates, {uncertain_share * coupling, std::size_t(set.columns())}, level, sigma, most,
               out);
   std::vector<StripSums<2>> strips(std::size_t(set.tiles().strips));

@@ -10,16 +10,16 @@ namespace dmise {
 struct DarkMeasurement {
   int frames = 0;
   double longest_s = 0.0;
-  MeasuredValue current;                // of ordinary pixels
+  MeasuredValue current;                // in ordinary pixels
   MeasuredValue hot_fraction;           // share of pixels with more, exponentially distributed
   MeasuredValue hot_rate;               // mean of what they have more
   double threshold = 0.0;               // excess from which a pixel is counted as hot
   std::size_t counted = 0;              // pixels beyond it
-  std::size_t clipped = 0;              // of these, beyond what the longest frame can hold
+  std::size_t clipped = 0;              // those beyond what the longest frame can hold
   std::optional<double> temperature_c;  // mean
   double temperature_spread_c = 0.0;    // largest difference
   double drift = 0.0;        // rms of the frames' rates about the mean, where significant
-  std::vector<float> rates;  // of each pixel: its own if it is hot
+  std::vector<float> rates;  // one for each pixel: its own if it is hot
 };
 
 /// Measures darks that are longer than the bias's exposure. `saturation_dn`: above the bias; 0 if

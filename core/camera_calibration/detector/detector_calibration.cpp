@@ -9,8 +9,8 @@ namespace dmise {
 namespace {
 
 constexpr double effect_sigmas = 3.0, pattern_sigmas = 5.0;  // from which a value is given
-constexpr double root_sigmas = 8.0;  // of roots: a variance's deviation is twice as large a share
-constexpr double longest_stand_in_share = 0.1;  // of the longest dark, for the bias
+constexpr double root_sigmas = 8.0;  // for roots: a variance's deviation is twice as large a share
+constexpr double longest_stand_in_share = 0.1;  // for the bias, over the longest dark
 constexpr std::array all_kinds{FrameKind::bias, FrameKind::dark, FrameKind::flat, FrameKind::light};
 
 /// One frame has a level, and the noise from pixel to pixel.

@@ -7,7 +7,7 @@ namespace dmise {
 namespace {
 
 constexpr double pair_outlier_sigmas = 6.0;
-constexpr double max_light_difference = 0.05;  // of a pair
+constexpr double max_light_difference = 0.05;  // between both flats of a pair, relative
 
 /// A tile's values without outliers, at their places; NaN elsewhere.
 struct TileValues {
@@ -103,7 +103,7 @@ std::vector<PairTile> pair_tiles(const std::vector<float>& difference, double ra
                                  const std::vector<FlatTile>& second, const Tiles& tiles,
                                  Threads& threads) {
   std::vector<PairTile> out(tiles.count());
-  // Of first - r second, where both have the signals S and S / r.
+  // The difference is first - r second, where both have the signals S and S / r.
   const double variances = 1 + ratio * ratio, rows = tiles.rows;
   const double scale = rows / (rows - 1) / variances;
   threads.for_ranges(out.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -144,7 +144,7 @@ std::vector<float> light_of(const CalibrationSet& set, const CalibrationFrame& f
 FlatTiles measure_flats(const CalibrationSet& set, const std::vector<float>& bias_mean,
                         Threads& threads) {
   FlatTiles out;
-  std::vector<float> before;  // of the flat before, if it has no partner yet
+  std::vector<float> before;  // the flat before, if it has no partner yet
   for (const CalibrationFrame& flat : set.of(FrameKind::flat)) {
     auto light = light_of(set, flat, bias_mean);
     out.flats.push_back(&flat);

@@ -14,8 +14,8 @@ constexpr double response_outlier_sigmas = 6.0;
 /// A tile of two images without its mean, slopes and bends, relative to the means.
 struct TileCovariance {
   double covariance = 0.0, pixels = 0.0, mean = 0.0;  // mean of the first
-  double variance = 0.0;                              // of the mean of both
-  std::vector<float> deviations;                      // of the mean of both, of each pixel
+  double variance = 0.0;                              // pixels' variance in the mean of both
+  std::vector<float> deviations;                      // one for each pixel, in the mean of both
 };
 
 /// A tile's relative deviations from its mean, slopes and bends: vignetting bends a tile by as much

@@ -12,8 +12,8 @@ struct FieldLight {
   MeasuredValue relative;
 };
 
-/// Light over the field by two halves of the flats, as means of tiles: a polynomial in the square
-/// of the radius. By rising radius; empty if the frame does not determine it.
+/// Light over the field by two halves of the flats, as means of tiles: a polynomial in the squared
+/// radius. By rising radius; empty if the frame does not determine it.
 std::vector<FieldLight> measure_lens_light(const CalibrationSet& set,
                                            const std::vector<float>& first,
                                            const std::vector<float>& second);

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double full_share = 0.3;  // of the noise that light of a tile would have
+constexpr double full_share = 0.3;  // full tiles have less of the noise that their light would have
 
 /// The noise of light per signal of each pair, 1 / gain in DN; tiles without light do not count.
 double noise_per_signal(const FlatPair& pair, double floor_variance) {
@@ -61,7 +61,7 @@ StraightTile straight(const PairTile& tile, double loss_per_dn, double floor_var
 /// Steadiness of the lamp by the means of whole flats: the loss's deviation by it [1/DN].
 double loss_by_lamp(const std::vector<std::array<double, 3>>& frames, double rate_dn_per_s,
                     Linearity& out) {
-  // Of each frame: its time, its mean over the fit's, and the variance of this ratio by noise.
+  // For each frame: its time, its mean over the fit's, and the variance of this ratio by noise.
   double chi2 = 0.0, squares = 0.0, n = 0.0, time = 0.0, times = 0.0;
   for (const auto& [t, ratio, variance] : frames) {
     chi2 += (ratio - 1) * (ratio - 1) / variance;
@@ -152,7 +152,7 @@ Linearity measure_linearity(const FlatTiles& flats, const Tiles& tiles,
       times.insert(*flats.flats[f]->exposure_s);
     }
   if (used.size() < 4 || times.size() < 3 || *times.rbegin() < 3 * *times.begin()) return out;
-  // Of each tile S = p t + q t^2 by weights 1 / t: the loss is -q / p^2.
+  // Fits each tile by S = p t + q t^2 with weights 1 / t: the loss is -q / p^2.
   std::vector<StripSums<2>> strips(std::size_t(tiles.strips));
   std::vector<double> model(used.size(), 0.0), mean(used.size(), 0.0);
   double rates = 0.0, count = 0.0;
@@ -180,7 +180,7 @@ Linearity measure_linearity(const FlatTiles& flats, const Tiles& tiles,
   std::vector<std::array<double, 3>> frames;
   const double pixels = count * tiles.width * tiles.height;
   for (std::size_t i = 0; i < used.size(); ++i) {
-    double scatter = 0.0, n = 0.0;  // of tiles, which holds more than the noise
+    double scatter = 0.0, n = 0.0;  // by tiles, whose scatter holds more than the noise
     for (const FlatTile& tile : flats.tiles[used[i]])
       if (tile.mean > 0) scatter += double(tile.scatter) * double(tile.scatter), ++n;
     const double variance = std::max(scatter / n, floor_variance) / pixels;

@@ -8,8 +8,8 @@ namespace dmise {
 
 /// How much light of flats a detector holds [DN above the bias].
 struct Saturation {
-  std::optional<MeasuredValue> level;  // of pixels that are full; empty if no flat shows it
-  std::vector<char> usable;            // of each flat: all its tiles are below
+  std::optional<MeasuredValue> level;  // count of full pixels; empty if no flat shows it
+  std::vector<char> usable;            // whether all tiles of a flat are below
   int saturated = 0;                   // flats that are not
   /// Whether a tile of a flat is below, with all its pixels.
   bool holds(const FlatTile& tile) const {

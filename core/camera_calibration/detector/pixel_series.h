@@ -20,7 +20,7 @@ class PixelSeries {
   /// A pixel over all frames.
   struct Result {
     double mean = 0.0;
-    double variance = 0.0;  // of a frame, over that by its sigma: 1 if as expected
+    double variance = 0.0;  // scatter between frames over that by their sigmas: 1 if as expected
     bool struck = false;    // by a particle: its largest value is left out
   };
   /// Takes two frames at least. NaN where a frame has no value.
@@ -30,7 +30,7 @@ class PixelSeries {
   double only(std::size_t pixel) const { return pixels_[pixel].sum / weight_; }
 
   int frames() const { return int(weights_.size()); }
-  double weight() const { return weight_; }  // of all frames, 1 / sigma^2
+  double weight() const { return weight_; }  // sum of 1 / sigma^2 over all frames
 
  private:
   struct Pixel {

@@ -12,8 +12,8 @@ namespace dmise {
 /// A frame in whole tiles, over which light is nearly even, and in strips of tiles along columns,
 /// which a jackknife leaves out one at a time. What is left at the right and below is not used.
 struct Tiles {
-  int columns = 0, rows = 0;    // of the frame
-  int width = 0, height = 0;    // of a tile [px]
+  int columns = 0, rows = 0;    // the frame's size
+  int width = 0, height = 0;    // a tile's size [px]
   int across = 0, down = 0;     // tiles
   int strips = 0;               // groups of tiles side by side
   std::vector<char> straddles;  // by tile across: it holds two kinds of a mosaic's pixels

@@ -27,13 +27,13 @@ void add_end_error(Source& source, double variance_px2) {
 /// Moves ends outwards, a piece at a time, while there is light beyond them; returns whether it
 /// has, with the light of the longer line.
 bool move_ends(const Scene& scene, StreakLight& light, Source& source) {
-  constexpr double sure_sigmas = 3.0, min_share = 0.1, max_share = 0.25;  // of its length
+  constexpr double sure_sigmas = 3.0, min_share = 0.1, max_lengths = 0.25;
   constexpr std::array ends{TrailChange::first_end, TrailChange::last_end};
   const double length_px = source.trail().length_px, step_px = light.piece_px;
   bool has_moved = false;
   for (std::size_t end = 0; end < 2; ++end) {
     double moved_px = 0.0;
-    while (moved_px < max_share * length_px) {
+    while (moved_px < max_lengths * length_px) {
       const LightBeyond beyond = light_beyond(light)[end];
       if (beyond.sigmas < sure_sigmas || beyond.share < min_share) break;
       Source longer = source;

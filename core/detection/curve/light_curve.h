@@ -10,7 +10,7 @@ namespace dmise {
 /// first end, and the period is in pixels.
 struct MeasuredCurve {
   LightCurve curve;
-  // Of a period: how far the line may go on beyond either end, where the object is dark.
+  // How far the line of periodic light may go on beyond either end, where the object is dark.
   double dark_first_px = 0.0, dark_last_px = 0.0;
 };
 

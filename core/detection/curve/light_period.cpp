@@ -14,20 +14,20 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t max_harmonics = 16;
-constexpr double shortest_fwhms = 1.75;  // of a period or a part of one: the PSF leaves 0.3 of it
+constexpr double shortest_fwhms = 1.75;  // shortest period of a harmonic: the PSF leaves 0.3 of it
 constexpr double max_cycles = 160.0;     // on the line, of the highest harmonic: bounds the time
-constexpr double steps = 4.0;            // of the frequency, a cycle of the highest harmonic more
-constexpr double worth_more = 6.0;       // of chi2, than a bend of the light
+constexpr double steps = 4.0;            // frequency steps for a cycle more of the highest harmonic
+constexpr double worth_more = 6.0;       // gain in chi2 by which a period must beat a bend
 constexpr double least_for_longer =
-    15.0;  // of the score: a multiple of a period has more harmonics
+    15.0;  // gain in score that a multiple of a period needs: it has more harmonics
 constexpr double min_share_for_longer = 0.02;  // and so much of it more
-constexpr int phases = 720;                    // of a period, at which its light is looked at
+constexpr int phases = 720;                    // places in a period at which its light is looked at
 
 /// Light along the line, in units in which the fit is linear, and its products with all others.
 struct Column {
   std::vector<double> shape;    // by pieces
   double background = 0.0;      // and an even background
-  std::vector<double> product;  // of the equations with it
+  std::vector<double> product;  // the equations' matrix times this column
   double background_product = 0.0, right = 0.0;
 };
 
@@ -54,7 +54,7 @@ double product_of(const Column& a, const Column& b) {
 /// leave without light.
 constexpr std::size_t free_pieces = pieces_beyond + 2;
 
-/// Of a function of the place along the line, 0 at the ends.
+/// The column of a function of the place along the line, 0 at the ends.
 template <class Function>
 Column along_line(const StreakLight& light, const Function& of) {
   std::vector<double> shape(light.all_pieces(), 0.0);
@@ -158,7 +158,7 @@ class Periodogram {
   }
 
   Candidate best() const {
-    constexpr double min_share = 0.85;  // of the gain of free light, that repeats
+    constexpr double min_share = 0.85;  // light that repeats has this share of free light's gain
     Candidate out = highest(1 / light_.length_px);
     // Less than two periods are free light: what repeats explains nearly as much.
     if (const double two = 2 / light_.length_px; out.frequency < two) {
@@ -194,7 +194,7 @@ class Periodogram {
     return {least.at, -least.value, -least.value - 2 * double(harmonics) * price(), harmonics};
   }
 
-  /// Of a number of harmonics, over that of the other columns alone, in units of the noise.
+  /// Gain by a number of harmonics over the other columns alone, in units of the noise.
   double gain_at(double frequency, std::size_t harmonics) const {
     const std::vector<double> gains = gains_at(frequency, harmonics);
     return gains.empty() ? 0.0 : gains.back();
@@ -270,7 +270,7 @@ double log_factor(std::size_t n) {
 }
 
 double Periodogram::false_alarm(const Candidate& c) const {
-  // Of times that are spread evenly over the line.
+  // The times are spread evenly over the line: their variance is its length^2 / 12.
   const double time_px = light_.length_px * std::sqrt(4 * pi / 12);
   double sum = 0.0;
   for (std::size_t h = 1; h <= max_harmonics; ++h) {
@@ -333,7 +333,7 @@ bool repeats(const Wave& wave, const Candidate& c, double length_px) {
 
 /// How far beyond an end the light stays nearly dark, at most a period.
 double dark_beyond(const Wave& wave, double even, double end_px, double side, double period_px) {
-  constexpr double dark = 0.15;  // of the mean light
+  constexpr double dark = 0.15;  // largest share of the mean light
   constexpr int steps_of_period = 100;
   for (int k = 0; k < steps_of_period; ++k) {
     const double way_px = k * period_px / steps_of_period;

@@ -10,13 +10,13 @@
 namespace dmise {
 namespace {
 
-constexpr double min_fwhms = 4.0;        // of the line
-constexpr std::size_t max_pieces = 800;  // of longer lines they are longer
+constexpr double min_fwhms = 4.0;        // shortest line that is measured
+constexpr std::size_t max_pieces = 800;  // longer lines have longer pieces
 constexpr double reach_sigmas = 5.0;     // along the line, of the light of a piece
 constexpr double across_sigmas = 3.0, across_px = 1.0;
-constexpr double least_seen = 0.1;  // of the weight that the best measured bin has
-constexpr double weak = 1e-6;       // of it, of the prior that keeps equations solvable
-constexpr int passes = 3;           // of weights by the light that was found
+constexpr double least_seen = 0.1;  // least weight of a measured bin, over the largest
+constexpr double weak = 1e-6;       // the prior's weight over the largest: keeps equations solvable
+constexpr int passes = 3;           // each takes its weights from the light of the one before
 
 /// A pixel and the light of pieces in it, of `first` and those behind it.
 struct PiecePixel {

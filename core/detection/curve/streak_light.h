@@ -21,10 +21,10 @@ struct StreakLight {
   double length_px = 0.0, fwhm_px = 0.0;
   double piece_px = 0.0;
   std::size_t pieces = 0;                 // on the line, an even number
-  BandedMatrix matrix;                    // of all pieces, those beyond the ends too
+  BandedMatrix matrix;                    // equations of all pieces, those beyond the ends too
   std::vector<double> right, background;  // products with the pixels, and with an even background
   double background_weight = 0.0, background_right = 0.0;
-  double reduced_chi2 = 0.0;  // of the pixels
+  double reduced_chi2 = 0.0;  // by the pixels around the line
 
   /// By which squares of errors are more than by the noise.
   double misfit() const { return std::max(reduced_chi2, 1.0); }

@@ -8,9 +8,9 @@ namespace dmise {
 /// velocity it is its own inverse. Source: Klioner 2003, AJ 125, 1580, section 5.
 Vec<Gcrs> aberrated(const Vec<Gcrs>& from, const Vec<Gcrs>& velocity_m_per_s);
 
-/// Corrects the direction of an Earth satellite measured relative to the stars. Catalogue positions
-/// of stars map to pixels with the aberration of the observer's total barycentric velocity V + v (V
-/// of the Earth, v of the sensor relative to it); the satellite shares V, so its light has only the
+/// Corrects the direction of an Earth satellite measured relative to the stars. A catalogue's stars
+/// map to pixels with the aberration of the observer's total barycentric velocity V + v (V the
+/// Earth's, v the sensor's relative to it); the satellite shares V, so its light has only the
 /// aberration of v. Hence corrected = inverse_v(forward_(V + v)(astrometric)), the geometric
 /// direction corrected for light time.
 Vec<Gcrs> without_annual_aberration(const Vec<Gcrs>& astrometric,

@@ -18,7 +18,7 @@ Vec<Gcrs> zenith_of(const FrameHeader& header);
 std::optional<Refraction> refraction_of(const FrameHeader& header);
 
 /// Atmospheric extinction of a source at `pixel` [mag]: the header's coefficient times the airmass
-/// of Kasten & Young 1989 at the apparent elevation; 0 without a site.
+/// by Kasten & Young 1989 at the apparent elevation; 0 without a site.
 double extinction_mag(const FrameHeader& header, PixelPosition pixel);
 
 }  // namespace dmise

@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr double sunlike_bv = 0.65;  // of what the zero point is for
+constexpr double sunlike_bv = 0.65;  // the zero point is for a star of this colour
 
 }  // namespace
 

@@ -14,8 +14,8 @@ namespace dmise {
 struct ExpectedStar {
   PixelPosition place;     // in mid exposure
   double signal_e = 0.0;   // in the whole exposure
-  double radius_px = 0.0;  // of a planet's disc
-  // Of a variable star: the most and the least of its light, relative to `signal_e`.
+  double radius_px = 0.0;  // a planet's disc; 0 for a star
+  // Most and least light of a variable star, relative to `signal_e`.
   double most = 1.0, least = 1.0;
 
   bool varies() const { return most > least; }
@@ -25,8 +25,8 @@ struct ExpectedStar {
 /// and air, without noise and clouds.
 class ExpectedStars {
  public:
-  /// Of at least `min_signal_e`, in the frame and up to `beyond_px` beside it. `header` must
-  /// outlive it.
+  /// Takes sources of at least `min_signal_e`, in the frame and up to `beyond_px` beside it.
+  /// `header` must outlive it.
   ExpectedStars(const FrameHeader& header, int columns, int rows, double min_signal_e,
                 double beyond_px);
 

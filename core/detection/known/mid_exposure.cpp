@@ -23,7 +23,7 @@ struct Sight {
 
 struct Places {
   Vec<Gcrs> start_m, end_m;
-  double excess_rad;  // of the angle between them over the orbit's
+  double excess_rad;  // angle between them less the orbit's
 };
 
 Places places_at(const Sight& start, const Sight& end, double radius_m, double exposure_s,

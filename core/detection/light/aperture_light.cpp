@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr double step = 0.02;  // of the table, in wavelength / diameter
+constexpr double step = 0.02;  // between radii of the table, in wavelength / diameter
 
 /// 2 J1(v) / v.
 double jinc(double v) { return v > 0 ? 2 * std::cyl_bessel_j(1.0, v) / v : 1.0; }

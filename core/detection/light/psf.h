@@ -8,8 +8,8 @@
 namespace dmise {
 
 /// Light of a point source over pixels: concentric Gaussians. Their weights sum to the share of the
-/// light that they describe, 1 less the light far out; some may be negative, as for the dark rings
-/// of diffraction. The variance of each includes the pixel's, 1/12 px^2.
+/// light that they describe, 1 less the light far out; some may be negative, as where diffraction
+/// leaves dark rings. The variance of each includes the pixel's, 1/12 px^2.
 struct Psf {
   struct Part {
     double weight = 1.0, sigma_px = 1.0;
@@ -53,7 +53,7 @@ struct PsfField {
   bool is_round_gaussian() const { return count == 1 && along_x == 0.0 && along_diagonal == 0.0; }
 
   double width_px = 1.0;   // sigma of the nearest Gaussian, without pixel, where the scale is 1
-  Polynomial log_scale{};  // of the width, over u and v
+  Polynomial log_scale{};  // logarithm of the width over u and v
   bool varies = false;     // whether log_scale is used
   double min_log_scale = 0.0, max_log_scale = 0.0;  // what stars were seen to have
   PixelPosition centre, half;                       // u = (x - centre.x) / half.x, v likewise

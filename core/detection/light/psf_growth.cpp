@@ -12,9 +12,9 @@
 namespace dmise {
 namespace {
 
-constexpr std::array edges = {0.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0};  // of zones, in widths
+constexpr std::array edges = {0.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0};  // zones' ends, in widths
 constexpr std::size_t zones = edges.size() - 1;
-constexpr double min_coverage = 0.3;  // of a star's zone by pixels that may be used
+constexpr double min_coverage = 0.3;  // share of a star's zone that usable pixels cover
 constexpr double outlier_sigmas = 4.0;
 constexpr double tolerated_error = 0.15;  // relative, that does not make a pixel an outlier
 constexpr double sky_error = 0.3;         // around a star, in units of its background's prior
@@ -25,8 +25,8 @@ constexpr double dark_ring = -1.0;
 // far out, and 1.9 to 2.8 at the zones' distances.
 constexpr double power_of_seeing = 2.4;
 constexpr std::array obscurations = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
-constexpr double growth_error = 1e-3;    // of light within a distance
-constexpr double min_growth_gain = 4.0;  // of chi2, by which a shape is likelier
+constexpr double growth_error = 1e-3;    // in light within a distance, relative to all
+constexpr double min_growth_gain = 4.0;  // gain in chi2 by which a shape is likelier
 static_assert(zones < max_parameters);
 
 double distance_px(const Trail& t, const FitPixel& p) {
@@ -41,7 +41,7 @@ double area_px2(const Trail& t, double reach_px) {
   return pi * reach_px * reach_px + 2 * t.length_px * reach_px;
 }
 
-/// Of one star: what is in its zones over the model.
+/// What one star has in its zones over the model.
 struct Excess {
   std::array<double, zones> light_e{}, variance_e2{}, pixels{};
 };
@@ -145,7 +145,7 @@ Extrapolation by_aperture(const MeasuredGrowth& measured, double width_px) {
 }  // namespace
 
 double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixture) {
-  // Of each star excess = flux * (excess of a point) + area * (error of the sky): the sky between
+  // Each star's excess = flux * (excess of a point) + area * (error of the sky): the sky between
   // stars contains light of their wings, as a star's fitted background does.
   constexpr std::size_t sky = zones;
   SmallMatrix matrix{};

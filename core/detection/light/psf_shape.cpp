@@ -26,7 +26,7 @@ constexpr double neighbour_error = 0.15;  // relative, that does not make a pixe
 constexpr double mixture_outlier_sigmas = 4.0;  // light of a neighbour that was not found
 constexpr double significant_chi2 = 60.0;       // gain of a mixture over a Gaussian
 constexpr double negligible_chi2 = 25.0;        // loss by dropping a part
-constexpr int rounds = 3;                       // of linear least squares
+constexpr int rounds = 3;                       // solutions by linear least squares
 static_assert(all <= max_parameters);
 
 using Weights = std::array<double, parts>;

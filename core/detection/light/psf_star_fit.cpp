@@ -9,12 +9,12 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t parameters = 5;    // flux, x, y, background, log of the width
-constexpr double gaussian_error = 0.05;  // of a Gaussian
+constexpr double gaussian_error = 0.05;  // relative, where stars are not Gaussian
 constexpr double min_width_px = 0.25, max_width_px = 25.0;
 constexpr int max_steps = 12;
 constexpr double settled = 1e-3;   // convergence: step of the log of the width
-constexpr double log_step = 0.01;  // of the derivative by it
-constexpr double max_step = 0.35;  // of the log of the width
+constexpr double log_step = 0.01;  // step of the derivative by the log of the width
+constexpr double max_step = 0.35;  // longest step of the log of the width
 
 struct Linearised : NormalEquations {
   double chi2 = 0.0;

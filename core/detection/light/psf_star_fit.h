@@ -10,8 +10,8 @@ namespace dmise {
 struct StarWidth {
   Trail trail;
   double background_e = 0.0;
-  double log_width = 0.0;  // of sigma_px without pixel
-  double error = 0.0;      // of log_width, 1 sigma
+  double log_width = 0.0;  // logarithm of sigma_px without pixel
+  double error = 0.0;      // 1 sigma of log_width
   double reduced_chi2 = 0.0;
   double chi2 = 0.0;
 };

@@ -20,7 +20,7 @@ DMISE_INLINE Row exponential(Row x) {
   const Row scaled = x * 1.44269504F;
   const RowMask whole = __builtin_convertvector(scaled - 0.5F, RowMask);
   const Row n = __builtin_convertvector(whole, Row);
-  const Row f = (x - n * 0.693359375F) + n * 2.12194440e-4F;  // of logarithms of 2 in two parts
+  const Row f = (x - n * 0.693359375F) + n * 2.12194440e-4F;  // less n ln 2, in two parts
   Row p = of(1.9875691500e-4F);
   p = p * f + 1.3981999507e-3F;
   p = p * f + 8.3334519073e-3F;

@@ -21,7 +21,7 @@ struct StarCanvas {
   std::size_t stride = 0, rows = 0;
   float* light = nullptr;
   float *by_x = nullptr, *by_y = nullptr;  // derivatives by the star's place; null: none
-  float* scratch = nullptr;                // of points * (stride + rows + star_lanes) values
+  float* scratch = nullptr;                // points * (stride + rows + star_lanes) values
 };
 
 /// Normal equations of a star's light, relative, and place.

@@ -156,7 +156,7 @@ class Problem {
   }
 
  private:
-  /// Of the variances of all pixels: one logarithm for many of them.
+  /// Takes one logarithm of the product of many variances.
   double sum_of_logarithms(const std::vector<double>& variance) const {
     double logs = 0.0, product = 1.0;
     for (std::size_t i = 0; i < used_; ++i) {

@@ -40,7 +40,7 @@ struct TrailFit {
   double background_e = 0.0;
   double chi2 = 0.0;
   double deviance = 0.0;  // chi2 + sum of ln variance: compares models
-  int degrees = 0;        // of freedom
+  int degrees = 0;        // degrees of freedom
   bool converged = false;
   int parameters = 0;              // free ones: of trail 0, trail 1, ..., background
   std::vector<double> covariance;  // parameters x parameters

@@ -18,7 +18,7 @@ struct TrailSums {
   double chi2 = 0.0, merit = 0.0;  // merit: with the variances of the state before
 };
 
-/// A block of pixels. Of the last one, `used` may be less; values behind are finite, variances 1.
+/// A block of pixels. The last one may have fewer `used`; values behind are finite, variances 1.
 struct TrailPixels {
   const double *x = nullptr, *y = nullptr, *signal_e = nullptr, *variance_e2 = nullptr;
   const double* before = nullptr;  // variance of the state before; null: its own

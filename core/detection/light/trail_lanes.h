@@ -22,7 +22,7 @@ struct FourDerivatives {
   V f, f1, f2, f3, f4;
 };
 
-/// Of the Gaussian of sigma 1/s at x/s, whose standard density there is `p`: Hermite's polynomials.
+/// The Gaussian of sigma 1/s at x/s, where its standard density is `p`, by Hermite's polynomials.
 template <class V>
 DMISE_ALWAYS_INLINE FourDerivatives<V> of_gaussian(V x, V p, double s) {
   const V x2 = x * x, ps = p * s;

@@ -15,7 +15,7 @@ struct TrailShape {
   // Factors of derivatives along and across in the term of the pixel's square.
   double fourth = 0.0, mixed = 0.0, odd = 0.0;
   std::size_t parts = 0;
-  // Of each part: inverse of sigma along the line at a place across it, and across; how far the
+  // For each part: inverse of sigma along the line at a place across it, and across; how far the
   // middle of its light along the line moves with the place across; whether it has that term.
   double weight[max_parts] = {}, along[max_parts] = {}, across[max_parts] = {},
          lean[max_parts] = {};

@@ -112,7 +112,7 @@ struct CellMemory {
   int near = 0;
 };
 
-/// Of `values` of a cell, which are not empty.
+/// The sky by the `values` of a cell, which are not empty.
 Sky clipped_sky(CellMemory& memory) {
   const std::vector<std::uint16_t>& values = memory.values;
   // A quarter of them is enough to start from.
@@ -148,7 +148,7 @@ Sky clipped_sky(CellMemory& memory) {
     median = window.spread_median() + double(base);
     const double variance = std::max(squares / n - (sum / n) * (sum / n), 0.0);
     const double before = sigma;
-    sigma = std::max(std::sqrt(variance) / 0.98658, 0.3);  // of a normal cut at 3 sigma
+    sigma = std::max(std::sqrt(variance) / 0.98658, 0.3);  // the cut at 3 sigma narrows a normal
     centre = median;
     if (std::abs(sigma - before) < 1e-3 * before) break;
   }

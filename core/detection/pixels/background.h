@@ -52,7 +52,7 @@ class Background {
   bool is_sloped(std::size_t cell) const;
   Area area_of(std::size_t cell) const;
 
-  int columns_, rows_;  // of the frame
+  int columns_, rows_;  // the frame's size
   CellMesh cells_;      // levels of the cells
   CellMesh level_;      // on that mesh, or finer where they bend
   CellMesh sigma_;

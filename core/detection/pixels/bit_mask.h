@@ -50,7 +50,7 @@ class BitMask {
   }
 
  private:
-  std::size_t words_;  // of a row
+  std::size_t words_;  // in each row
   std::vector<std::uint64_t> bits_;
 };
 

@@ -36,9 +36,9 @@ class CellMesh {
   };
   static Between between(int pixel, int pixels, int cells);
   int columns_ = 0, rows_ = 0;
-  std::vector<Between> across_, down_;  // of every column and row
+  std::vector<Between> across_, down_;  // for every column and row
   std::vector<float> next_;             // the weights of across_
-  std::vector<int> ends_;               // of each cell, the column after its last
+  std::vector<int> ends_;               // the column after the last of each cell
 };
 
 }  // namespace dmise

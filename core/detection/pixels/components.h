@@ -18,7 +18,7 @@ struct Component {
   std::vector<Run> runs;
   int min_x = 0, max_x = 0, min_y = 0, max_y = 0;
   int pixels = 0;
-  float peak_snr = 0.0f;  // of the matched filter
+  float peak_snr = 0.0f;  // by the matched filter
   int peak_x = 0, peak_y = 0;
 };
 

@@ -4,13 +4,12 @@
 namespace dmise::detection_limits {
 
 inline constexpr int background_cell_px = 64;
-inline constexpr double seed_snr = 5.0;     // minimum peak of a source in the filtered frame
-inline constexpr double connect_snr = 3.0;  // threshold of its pixels
-inline constexpr double min_snr = 6.0;      // minimum SNR of the fitted flux
-inline constexpr double min_light_snr =
-    3.0;  // of the fitted flux where it has the errors of the ends
-// Of a streak: minimum SNR with errors of its ends and of columns, and the matched filter's that no
-// noise reaches.
+inline constexpr double seed_snr = 5.0;       // minimum peak of a source in the filtered frame
+inline constexpr double connect_snr = 3.0;    // threshold of its pixels
+inline constexpr double min_snr = 6.0;        // minimum SNR of the fitted flux
+inline constexpr double min_light_snr = 3.0;  // minimum SNR of the flux with errors of the ends
+// A streak's minimum SNR with errors of its ends and of columns, and an SNR by the matched filter
+// that no noise reaches.
 inline constexpr double min_published_snr = 4.0, sure_snr = 15.0;
 // Minimum difference between a source's trail and a star's.
 inline constexpr double min_difference_px = 1.5;

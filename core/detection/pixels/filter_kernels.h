@@ -6,7 +6,7 @@
 
 namespace dmise {
 
-/// Of a turn of 2^32, the golden section: any run of pixels has evenly spread values.
+/// The golden section of a turn of 2^32: any run of pixels has evenly spread values.
 inline constexpr std::uint32_t dither_per_pixel = 0x9E3779B9u;
 
 /// Columns that `mark_above` looks at together.

@@ -12,7 +12,7 @@ namespace dmise {
 namespace {
 
 constexpr int cell_px = 48;
-constexpr int min_pixels = 200;  // of a cell, that are not hidden
+constexpr int min_pixels = 200;  // that are not hidden in a cell
 constexpr double min_scatter = 0.85;
 
 /// What is not hidden in a cell, by quantiles: a streak does not count. Both scatters are 1 and the

@@ -16,12 +16,12 @@ struct FilteredFrame {
   static constexpr int steps = 5, most = 31;
 
   int columns = 0, rows = 0;
-  double sigma_px = 1.0;         // of the filter
+  double sigma_px = 1.0;         // width of the matched filter
   std::vector<std::int8_t> snr;  // rows x columns
 
   /// A cell of a mesh over the frame, as `flatten` found it.
   struct Cell {
-    float middle = 0.0f, scatter = 1.0f;  // of the pixels that are not hidden: median, divisor
+    float middle = 0.0f, scatter = 1.0f;  // median and divisor of the pixels that are not hidden
     float hidden = 0.0f;  // share of the pixels that are hidden or have light of stars
   };
   std::vector<Cell> mesh;  // empty until the frame is flat

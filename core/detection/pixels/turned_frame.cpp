@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-constexpr int side = 16;  // of a tile
+constexpr int side = 16;  // rows and columns of a tile
 
 /// Transposes a tile of 16 x 16 numbers: `to[i][j] = from[j][i]`.
 void transpose_tile(const std::int8_t* const* from, std::int8_t* const* to) {

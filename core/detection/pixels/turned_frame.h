@@ -9,7 +9,7 @@ namespace dmise {
 /// A filtered frame with columns as rows, along which lines are summed that pass more columns than
 /// rows: samples of lines beside each other then share lines of the cache.
 struct TurnedFrame {
-  int columns = 0, rows = 0;     // of the frame
+  int columns = 0, rows = 0;     // as in the filtered frame
   std::vector<std::int8_t> snr;  // columns x rows
 
   explicit TurnedFrame(const FilteredFrame& frame);

@@ -76,7 +76,7 @@ void join_four(std::int16_t* const rows[4], std::size_t shift, std::size_t begin
   for (std::size_t x = begin; x < end; x += step) {
     const std::int16_t *to_b = b + x + shift, *to_c = c + x + 2 * shift, *to_d = d + x + 3 * shift;
     const I16 first = load<I16>(a + x), middle = load<I16>(to_c + 1);
-    // Of the upper half, and of the lower one where the four need it.
+    // Sums over the upper half, and over the lower one where the four need it.
     const I16 upper0 = first + load<I16>(to_b), upper1 = first + load<I16>(to_b + 1);
     const I16 lower0 = load<I16>(to_c) + load<I16>(to_d);
     const I16 lower0_next = middle + load<I16>(to_d + 1);

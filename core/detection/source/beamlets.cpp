@@ -144,8 +144,8 @@ class Block {
     return levels_[std::size_t(std::bit_width(unsigned(length)) - 2)];
   }
 
-  /// Sums the lines over `length` rows from `first` on, and all shorter ones in them. A strip
-  /// of which so much is beside the frame that a half of it is always better is only summed if it
+  /// Sums the lines over `length` rows from `first` on, and all shorter ones in them. A strip that
+  /// is so far beside the frame that a half of it is always better is only summed if it
   /// is a part of a longer one that is.
   void sum(int first, int length, bool needed) {
     needed = needed || used(first, length) >= least_used * length;
@@ -224,7 +224,7 @@ class Block {
   Orientation orientation_;
   int first_, size_;  // rows
   std::size_t width_, stride_ = 0;
-  const std::vector<Level>& levels_;  // of 2, 4, .. rows
+  const std::vector<Level>& levels_;  // for strips of 2, 4, .. rows
   const Kernels& kernels_;
   Sums& memory_;
   std::vector<std::int16_t*> rows_;  // by strip, then shift

@@ -37,7 +37,7 @@ void add_errors_of_hidden_ends(const Scene& scene, Source& source) {
   if (!source.streak || !(source.free & trail_length) || !is_bounded(scene, source.trail())) return;
   const Trail& t = source.trail();
   const HiddenEnds gaps = hidden_ends(scene, t);
-  // Of the length, by two uniform errors.
+  // Variance of the length: each end has a uniform error.
   const double ends_px2 = (gaps.first_px * gaps.first_px + gaps.last_px * gaps.last_px) / 3;
   if (!(ends_px2 > 0)) return;
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);

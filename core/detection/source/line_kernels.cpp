@@ -83,7 +83,7 @@ DMISE_INLINE int add_along(const LineSamples& line, int k, SampleSum& out) {
 using I16 = std::int16_t __attribute__((vector_size(DMISE_SIMD_BYTES)));
 using I8 = std::int8_t __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
 constexpr int shorts = DMISE_SIMD_BYTES / 2;
-constexpr int max_rows = 32;  // of which sums have 16 bits
+constexpr int max_rows = 32;  // sums over as many fit into 16 bits
 static_assert(31 * (1 << BandSums::bits) * max_rows < 32768);
 static_assert(BandSums::block % shorts == 0 && shorts < BandSums::spare);
 

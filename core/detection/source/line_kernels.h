@@ -11,7 +11,7 @@ namespace dmise {
 /// with r = (k - centre) to_r. 0 is a pixel that is hidden.
 struct LineSamples {
   const std::int8_t* pixels = nullptr;
-  std::size_t count = 0;                        // of pixels: kernels read four at once
+  std::size_t count = 0;                        // pixels: kernels read four at once
   std::size_t along_step = 1, across_step = 1;  // from one row or column to the next, and beside it
   int from = 0, to = -1;
   int across = 0;  // pixels of a row or column
@@ -20,7 +20,7 @@ struct LineSamples {
 
 /// Sum of the samples that are not hidden, and how many these are.
 struct SampleSum {
-  static constexpr int bits = 12;  // of fractions: sums are whole numbers, in any order the same
+  static constexpr int bits = 12;  // fractional ones: sums are whole numbers, in any order the same
 
   std::int64_t sum = 0;  // in units of 2^-bits
   int samples = 0;
@@ -29,14 +29,14 @@ struct SampleSum {
 /// Lines beside each other, of the same rows: one begins at each pixel from `reach` before a line
 /// to `reach` after it. Arrays have `width` elements, which are 0 at first.
 struct BandSums {
-  static constexpr int bits = 5;    // of fractions
-  static constexpr int block = 32;  // of which `width` is a multiple
+  static constexpr int bits = 5;    // fractional ones
+  static constexpr int block = 32;  // `width` is a multiple of it
   static constexpr int spare = 64;  // pixels that are read after the last, for which `row` has room
 
   int reach = 0, width = 0;
   std::int32_t *sum = nullptr, *samples = nullptr;      // by line; sums in units of 2^-bits
-  std::int16_t *part = nullptr, *part_count = nullptr;  // of some rows; 0 afterwards
-  std::int8_t* row = nullptr;                           // of pixels, with 0 beside the frame
+  std::int16_t *part = nullptr, *part_count = nullptr;  // sums of some rows; 0 afterwards
+  std::int8_t* row = nullptr;                           // pixels, with 0 beside the frame
 };
 
 #define DMISE_LINE_KERNELS(level)                                 \

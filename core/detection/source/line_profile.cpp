@@ -13,8 +13,8 @@ namespace {
 constexpr int neighbours = 20;  // on each side
 constexpr int min_neighbours = 12;
 constexpr double dark_odds = 25.0;   // logarithm, of a gap without light against light
-constexpr double dark_share = 0.25;  // of a streak's light that a gap may have
-constexpr double dark_sigmas = 5.0;  // of the PSF: length of a gap that is none of the detector's
+constexpr double dark_share = 0.25;  // light that a gap may have, over the streak's
+constexpr double dark_sigmas = 5.0;  // shorter gaps, in units of the PSF, may be the detector's
 
 }  // namespace
 

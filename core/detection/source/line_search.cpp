@@ -12,7 +12,7 @@ namespace dmise {
 namespace {
 
 constexpr double max_bend = 0.03;  // sagitta over length
-constexpr int max_rounds = 8;      // of moving the ends
+constexpr int max_rounds = 8;      // moves of the ends
 
 /// The samples of a frame along a trail: one in each row or column, between two pixels.
 class Walk {
@@ -89,7 +89,7 @@ class SumNoise {
   }
 
  private:
-  static constexpr int most = 257;  // of a PSF of 32 px
+  static constexpr int most = 257;  // samples over 8 sigma of a PSF of 32 px
   double averaged_;
   std::array<double, most - 1> twice_;
   int correlated_ = 0;
@@ -146,7 +146,7 @@ Trail part_of(const Trail& t, double begin_px, double end_px) {
 /// length beside it: the part of the line with the largest SNR.
 Fit with_best_ends(const FilteredFrame& frame, const Fit& start) {
   constexpr double min_beyond_px = 24.0, turn_px = 0.6;
-  constexpr int parts = 96;  // of the line, between which ends are
+  constexpr int parts = 96;  // pieces of the line, between which ends are
   const double length = std::max(start.trail.length_px, 4.0);
   const double reach = length / 2 + std::max(min_beyond_px, length);
   Fit best = start;
@@ -261,7 +261,7 @@ BandSums LineBand::of(int reach) {
 ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turned,
                              const Trail& trail, LineBand& band) {
   constexpr int min_lines = 12;
-  constexpr int widest_step = 24;  // of lines that are summed together
+  constexpr int widest_step = 24;  // farther lines are not summed together
   // On each side; what is beside a short line changes sooner.
   const int lines = trail.length_px > 100 ? 48 : 24;
   const Walk walk(frame, trail);

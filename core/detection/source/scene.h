@@ -20,13 +20,13 @@ struct Scene {
   const StarMotion& stars;
   double gain_e_per_dn;
   double saturation_dn;                   // lowest possibly clipped count, with read noise
-  double sigma_px;                        // of a point source, including the pixel
+  double sigma_px;                        // width of a point source, including the pixel
   bool blooming;                          // charge above the full well flows along columns
   PsfField psf;                           // with it: sigma_px is the width in the frame's middle
   const PixelMask* unusable = nullptr;    // pixels without a value; null: all have one
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
   const KnownStars* known = nullptr;      // whose pixels are not used; null: none are known
-  // Of which the scatter of the sky is known; null: it is noise alone.
+  // Tells the scatter of the sky; null: it is noise alone.
   const FilteredFrame* flat = nullptr;
   double sources_per_px2 = 0.0;  // above the threshold of a component; 0: not known
 
@@ -99,8 +99,8 @@ struct Source {
   bool at_edge = false;
   bool beside = false;          // fitted together with another one beside it
   double model_error = 0.0;     // relative error of the PSF in comparisons
-  int flashes = 0;              // of a body that blinks, which were joined; 0: it is one light
-  double broad_sigma_px = 0.0;  // of a streak that is wider than the PSF; 0: it is not
+  int flashes = 0;              // joined ones of a body that blinks; 0: it is one light
+  double broad_sigma_px = 0.0;  // width of a streak that is wider than the PSF; 0: it is not
 
   const Trail& trail() const { return fit.trails[0]; }
   double snr() const { return trail().flux_e / std::sqrt(fit.cov(2, 2)); }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double bent_from_px = 15.0;      // shorter streaks are straight
 constexpr double sloped_from_px = 15.0;    // and uniformly bright
-constexpr int max_rounds = 8;              // of fitting and rejecting
+constexpr int max_rounds = 8;              // fits, each with outliers rejected by the one before
 constexpr double settled_px = 0.5;         // convergence of the ends
 constexpr double uneven_settled_px = 2.0;  // where the model is far from the light
 constexpr double uneven_error = 0.2;
@@ -182,7 +182,7 @@ double background_sigma_e(const FitPixel& pixel) {
 }
 
 bool is_bounded(const Scene& scene, const Trail& t) {
-  constexpr double max_diagonals = 2.0;  // of a streak through the frame, with room for its fit
+  constexpr double max_diagonals = 2.0;  // longest streak through the frame, with room for its fit
   const double max_px = max_diagonals * (scene.diagonal_px() + 6 * scene.sigma_px);
   return std::isfinite(t.x_px + t.y_px + t.flux_e + t.angle_rad + t.slope) &&
          t.length_px <= max_px && std::abs(t.sagitta_px) <= max_px &&

@@ -96,7 +96,7 @@ bool are_two_trails(const Scene& scene, const Trail& star, const Source& point) 
 /// Deviance by which chance disfavours a row of stars along a line: twice the negative logarithm of
 /// the number of such rows that a frame of so many stars has. Two stars may belong together.
 double rarity_of_row(const Scene& scene, const Trail& line, int count) {
-  constexpr double counts_slope = 1.1;  // of the logarithm of numbers, by that of light
+  constexpr double counts_slope = 1.1;  // numbers fall with this power of the light
   constexpr double companions = 0.01;   // share of stars that have one so near, by nature
   constexpr double max_rarity = 40.0;   // what is beside all chance has other reasons
   if (count < 3 || !(scene.sources_per_px2 > 0)) return 0.0;
@@ -192,7 +192,7 @@ bool beats_stars(const Scene& scene, const Source& source) {
 }
 
 bool is_wide_body(const Scene& scene, const Source& source) {
-  constexpr double wider = 1.7, min_gain = 10.0;  // of deviance
+  constexpr double wider = 1.7, min_gain = 10.0;  // width over the PSF's; gain in deviance
   const Trail& t = source.trail();
   const auto pixels = pixels_near(scene, t, 3 * wider * scene.sigma_px + 2.5);
   if (pixels.empty()) return false;

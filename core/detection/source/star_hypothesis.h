@@ -10,8 +10,8 @@ namespace dmise {
 /// Convergence of fits that are compared: small against every margin.
 inline constexpr double comparison_settled_chi2 = 0.05;
 
-/// How much of stars' trails lies on a line that they cross: 1 if they run along it, by the square
-/// of the share on it otherwise; 0 where stars don't trail.
+/// How much of stars' trails lies on a line that they cross: 1 if they run along it, otherwise the
+/// square of the share on it; 0 where stars don't trail.
 double share_of_trails_on(const Scene& scene, const Trail& line);
 
 /// Whether a streak is so short that it may be a row of stars, which is `row_px` long without their
@@ -27,8 +27,8 @@ double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line,
 bool moves_like_star(const Scene& scene, const Source& source, const Trail& star,
                      double tolerance_px);
 
-/// Whether a point explains the light around the source better than a star's trail, also than one
-/// of which only an end is there.
+/// Whether a point explains the light around the source better than a star's trail, also than a
+/// trail with only an end there.
 bool point_beats_star(const Scene& scene, const Source& source);
 
 /// Whether a point is what is left of two stars whose trails overlap, of which one was subtracted.

@@ -12,11 +12,11 @@
 namespace dmise {
 namespace {
 
-// Of slopes [SNR/px times the filter's width], so that no star counts for more. Neither brightness
-// nor the whole slope is limited: a limit is reached beyond the end of a bright star.
+// Limit of slopes [SNR/px times the filter's width], so that no star counts for more. Neither
+// brightness nor the whole slope is limited: a limit is reached beyond the end of a bright star.
 constexpr float steepest = 6.0F;
-constexpr double min_coherence = 0.25;  // of edges; 0: all directions are equally frequent
-constexpr double min_share = 0.12;      // of the beginnings of light that have an end
+constexpr double min_coherence = 0.25;  // edges' agreement; 0: all directions are equally frequent
+constexpr double min_share = 0.12;      // beginnings of light that have an end, over all
 constexpr double min_scatters = 8.0;
 constexpr double shortest_common_sigmas = 5.0, longest_common_px = 400.0;
 constexpr std::size_t max_beginnings = 4000;

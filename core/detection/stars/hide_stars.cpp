@@ -12,8 +12,8 @@
 namespace dmise {
 namespace {
 
-constexpr double subtracted_snr = 0.4;  // of a star, or of a pixel with its light, and more
-constexpr double max_trail_px = 500.0;  // of stars: longer ones are streaks of their own
+constexpr double subtracted_snr = 0.4;  // least light of a star, and in a pixel, that is subtracted
+constexpr double max_trail_px = 500.0;  // longer ones are streaks of their own, not stars
 constexpr double spare_px = 20.0;       // beside the frame, from where light of stars comes in
 constexpr double hidden_snr = 5.0;      // light of which too much may be left
 constexpr double lit_noise = 0.4;       // light in a pixel [its noise] that a fit must not take

@@ -10,11 +10,11 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t star_terms = 5;  // of a star: flux, x, y, background, log of the width
+constexpr std::size_t star_terms = 5;  // a star's flux, x, y, background, log of the width
 constexpr std::size_t all_terms = star_terms + 2;  // with the ellipticity
-constexpr double reach_widths = 3.0;               // of pixels from a star
-constexpr double ellipse_error = 0.05;             // of a Gaussian
-constexpr double step = 0.02;                      // of derivatives by differences
+constexpr double reach_widths = 3.0;               // how far from a star pixels are used
+constexpr double ellipse_error = 0.05;             // relative, where stars are not Gaussian
+constexpr double step = 0.02;                      // for derivatives by differences
 constexpr double elliptic_chi2 = 60.0;             // gain over a round PSF
 constexpr double least = 0.02, most = 0.6;
 constexpr int ellipse_rounds = 3;

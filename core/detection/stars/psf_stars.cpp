@@ -11,8 +11,8 @@ namespace {
 
 constexpr float min_peak_snr = 20.0f;
 constexpr int zones_across = 6, zones_down = 4;
-constexpr double max_extent_px = 400.0;  // of a star's trail: a longer one is rarely alone
-constexpr double max_sigmas = 30.0;  // of the header's Gaussian, to which a star's light extends
+constexpr double max_extent_px = 400.0;  // a star with a longer trail is rarely alone
+constexpr double max_sigmas = 30.0;      // reach of a star's light by the header's Gaussian
 
 /// Whether a component may be a whole star by its rectangle.
 bool has_extent_of_star(const Scene& scene, const Component& c) {

@@ -33,7 +33,7 @@ class ComponentMap {
   template <class Visit>
   void for_others(const Box& box, const Component& own, const Visit& visit) const;
 
-  int columns_, rows_;  // of cells
+  int columns_, rows_;  // size of the mesh of cells
   std::vector<std::vector<const Component*>> cells_;
 };
 

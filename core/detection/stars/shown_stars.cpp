@@ -14,11 +14,11 @@
 namespace dmise {
 namespace {
 
-constexpr double min_light = 0.1;    // of what is expected, in a fit
-constexpr double fitted_snr = 10.0;  // of a star's light: fainter ones are not fitted
+constexpr double min_light = 0.1;    // a fit has more, relative to what is expected
+constexpr double fitted_snr = 10.0;  // fainter stars are not fitted
 constexpr float fitted_noise = 0.5;  // light in a pixel [its noise] from which on it is fitted
 constexpr float neighbour_noise = 0.1;
-constexpr float model_error = 0.03F;  // of the Gaussian, in units of the light
+constexpr float model_error = 0.03F;  // where stars are not Gaussian, in units of the light
 constexpr double max_step_px = 0.7;
 constexpr double max_trail_px = 60.0;  // light of longer ones is faint in a pixel
 constexpr std::size_t parameters = 3;  // light relative to what is expected, x, y

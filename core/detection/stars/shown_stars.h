@@ -9,10 +9,10 @@ namespace dmise {
 /// A catalogue's star as a frame shows it.
 struct ShownStar {
   Trail trail;           // without flux
-  double noise_e = 1.0;  // of a pixel there
+  double noise_e = 1.0;  // noise of a pixel there
   double flux_e = 0.0;
   double light_error = 0.0;  // relative, 1 sigma, of flux_e
-  double most = 1.0;         // of its light over flux_e, of a variable star that was not fitted
+  double most = 1.0;         // greatest light over flux_e, for a variable star that was not fitted
 };
 
 /// Returns the stars with the light that stars around them have on average. Those well above the

@@ -11,14 +11,14 @@
 namespace dmise {
 namespace {
 
-constexpr double looked_for_snr = 8.0;  // of a star that must be seen if there are no clouds
+constexpr double looked_for_snr = 8.0;  // brighter stars must be seen if there are no clouds
 constexpr double crowded_snr = 200.0;   // brighter ones are saturated, or wide
-constexpr double measured_snr = 12.0;   // of a star whose light is measured
+constexpr double measured_snr = 12.0;   // brighter stars have their light measured
 constexpr double seen_snr = 3.0;
 constexpr double max_shift_px = 2.5;
 constexpr std::size_t enough_stars = 5;   // to measure a shift, or light
-constexpr int cells = 12;                 // of the mesh of light, both ways
-constexpr std::size_t most_in_cell = 16;  // of stars whose light is measured there
+constexpr int cells = 12;                 // rows, and columns, of the mesh of light
+constexpr std::size_t most_in_cell = 16;  // stars whose light is measured there
 
 /// Middle of the light above the noise around a place; empty if there is none near.
 std::optional<PixelPosition> centroid_near(const FilteredFrame& frame, PixelPosition at,

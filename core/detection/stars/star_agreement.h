@@ -9,8 +9,8 @@ namespace dmise {
 
 /// Light of a catalogue's stars in a part of a frame.
 struct StarLightRatio {
-  double middle = 1.0;    // of their light over what is expected
-  double scatter = 0.15;  // of its logarithm: scintillation, errors of the catalogue, blends
+  double middle = 1.0;    // median of their light over what is expected
+  double scatter = 0.15;  // in the logarithm: scintillation, errors of the catalogue, blends
 };
 
 /// How the stars that a catalogue expects agree with a frame. Variable stars take no part.
@@ -28,9 +28,9 @@ class StarAgreement {
                      const std::vector<ExpectedStar>& stars);
   std::size_t cell_of(PixelPosition place) const;
 
-  int columns_, rows_;  // of the frame
+  int columns_, rows_;  // the frame's size
   StarsSeen seen_;
-  std::vector<StarLightRatio> light_;  // of a mesh of cells
+  std::vector<StarLightRatio> light_;  // by cells of a mesh over the frame
 };
 
 }  // namespace dmise

@@ -9,10 +9,10 @@
 namespace dmise {
 namespace {
 
-constexpr double max_outside = 0.35;   // of the frame's edge, of a trail whose middle is beyond
+constexpr double max_outside = 0.35;   // from the frame's edge to a middle beyond, over the length
 constexpr int step_px = 2;             // between the places of a scan
 constexpr int same_trail = 16;         // steps in which trails hardly differ
-constexpr double min_read_px = 8.0;    // of a trail, also of a shorter one
+constexpr double min_read_px = 8.0;    // shorter trails are read as far
 constexpr int longest_read_px = 4000;  // longer ones would take the search beyond its bound
 
 /// The nearest pixel of a coordinate above -65536, faster than std::lround.
@@ -58,7 +58,7 @@ double TrailScan::score_at(double x, double y, const Trail& t) const {
   return score_of(sum, count, samples);
 }
 
-/// Of the sums over the quarters of a trail.
+/// Scores a trail by the sums over its quarters.
 double TrailScan::score_of(const std::array<double, 4>& sum, const std::array<int, 4>& count,
                            int samples) const {
   double total = 0.0, most = 0.0;
@@ -117,7 +117,7 @@ double TrailScan::reads_of_peaks() const {
 }
 
 std::vector<TrailPlace> TrailScan::peaks(double min_snr) const {
-  constexpr double by_steps = 0.8;  // of a score, that a place between those of the scan has there
+  constexpr double by_steps = 0.8;  // least share of a peak's score at the scan's nearest place
   const double left = -beside_px_.x_px, top = -beside_px_.y_px;
   const int wide = int((scene_.counts.columns - 2 * left) / step_px) + 1,
             high = int((scene_.counts.rows - 2 * top) / step_px) + 1;

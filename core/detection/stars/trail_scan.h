@@ -52,7 +52,7 @@ class TrailScan {
   const ResidualFrame& residual_;
   double longest_px_;             // trail in the frame
   PixelPosition beside_px_;       // how far beside the frame middles are searched
-  std::vector<double> variance_;  // of sums of so many pixels along a line
+  std::vector<double> variance_;  // for sums of so many pixels along a line
 };
 
 }  // namespace dmise

@@ -16,11 +16,11 @@ namespace {
 constexpr double min_trail_sigmas = 5.0;    // length from which on trails are told from points
 constexpr double far_trail_sigmas = 20.0;   // from which on no short streak looks like one
 constexpr double point_like_sigmas = 16.0;  // length up to which a bright point may look like one
-constexpr double brightness_error = 0.12;   // of a trail's brightness along it
+constexpr double brightness_error = 0.12;   // relative scatter of brightness along a trail
 constexpr double too_dark_sigmas = 3.5;     // by which a part of a trail may be too dark
-constexpr double tolerance = 0.15;          // of a trail's light, beyond which pixels are outliers
+constexpr double tolerance = 0.15;          // outliers are off by more of the trail's light
 constexpr double first_snr = 8.0, last_snr = 5.0;
-constexpr std::size_t min_pixels = 12;  // of a fit
+constexpr std::size_t min_pixels = 12;  // a fit needs as many
 
 // Bound of a search, so that it takes no longer than the frame's detection without it: pixels read,
 // for each pixel of the frame. A pixel costs more in a step of a fit.
@@ -195,7 +195,7 @@ class TrailSearch {
   /// Whether the light of a short trail is rather a point's, or that of a line of another length or
   /// direction.
   bool has_other_shape(const Trail& t) const {
-    constexpr double line_margin = 25.0;  // of deviance, by which another line must fit better
+    constexpr double line_margin = 25.0;  // deviance by which another line must fit better
     const Psf psf = scene_.psf.at({t.x_px, t.y_px});
     const auto all = residual_.pixels_around(t, 3 * scene_.sigma_px + 0.5);
     // Another source before the trail does not make it another shape.

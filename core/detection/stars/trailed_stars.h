@@ -21,8 +21,8 @@ bool stars_trail_far(const Scene& scene);
 
 /// Finds stars without a catalogue, where they trail: light that is even along the common trail and
 /// ends with it. Light that stands out of a part of a trail, as of an object before it, is left.
-/// Middles may be beside the frame. Returns none if the search exceeds its bound, which is a number
-/// of reads of pixels and does not depend on the machine.
+/// Middles may be beside the frame. Returns none if the search exceeds its bound, which counts
+/// reads of pixels and does not depend on the machine.
 std::vector<TrailedStar> find_trailed_stars(const Scene& scene);
 
 /// A frame less its stars.

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr int max_half_px = 32;        // of the profile
+constexpr int max_half_px = 32;        // half of the profile across a line
 constexpr double min_broadness = 1.3;  // to the width of the PSF
 constexpr double min_pixel_snr = 4.0;
 
@@ -118,7 +118,7 @@ double spread_px(const std::vector<double>& profile, const Sides& sides) {
 /// Whether there is more light between the sides than two lines of the PSF's width would leave.
 bool has_no_gap(const std::vector<double>& profile, const Sides& sides, double fwhm_px) {
   constexpr double least_apart = 1.1;   // in FWHM: nearer ones leave no gap
-  constexpr double sampling_px2 = 1.0;  // of pixels taken at the nearest place
+  constexpr double sampling_px2 = 1.0;  // pixels are taken at the nearest place, which widens
   const double apart = sides.width_px() / std::sqrt(fwhm_px * fwhm_px + sampling_px2) - 1;
   if (apart < least_apart) return false;
   const double of_pair = 2 * std::exp2(-apart * apart) / (1 + std::exp2(-4 * apart * apart));
@@ -131,7 +131,7 @@ bool has_no_gap(const std::vector<double>& profile, const Sides& sides, double f
 
 /// Whether there is neither light nor a lack of it beside a line, as there is beside an edge.
 bool is_alone(const std::vector<double>& profile, const Sides& sides) {
-  constexpr double most_beside = 0.2;  // of its light
+  constexpr double most_beside = 0.2;  // light beside the line, over its peak
   for (const int way : {-1, 1}) {
     const double from = (way < 0 ? sides.first_px : sides.last_px) + way * 0.5 * sides.width_px();
     double sum = 0.0;

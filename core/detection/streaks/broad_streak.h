@@ -10,8 +10,8 @@ namespace dmise {
 struct BroadLine {
   Line line;
   Extent extent;
-  double sigma_px = 0.0;    // of the Gaussian nearest to its profile across
-  bool is_no_pair = false;  // of two streaks of the PSF's width, by the light between its sides
+  double sigma_px = 0.0;    // Gaussian nearest to its profile across
+  bool is_no_pair = false;  // the light between its sides is too much for two streaks
 };
 
 /// The broad line along a rough one through the points of a component; empty if its profile across

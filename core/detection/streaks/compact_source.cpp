@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr double fit_keeps = 0.8;  // of a faint source's SNR, when the sky is fitted too
+constexpr double fit_keeps = 0.8;  // a fit of the sky too leaves so much of a faint source's SNR
 
 struct Light {
   std::vector<FitPixel> usable;   // pixels to fit

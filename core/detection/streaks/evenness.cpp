@@ -52,7 +52,7 @@ Evenness evenness_of(const Scene& scene, const Trail& t) {
 }  // namespace
 
 bool is_lit_throughout(const Scene& scene, const Trail& t) {
-  constexpr double dimmest = 0.2, sigmas = 4.0;  // of the mean light; of a piece that has as much
+  constexpr double dimmest = 0.2, sigmas = 4.0;  // a lit piece's share of the mean light; its SNR
   constexpr double longest_sigmas = 6.0;  // piece: two stars at its ends would light a longer one
   const Line line = line_of(t);
   const double least = dimmest * t.flux_e / t.length_px;

@@ -20,7 +20,7 @@ constexpr double turn_px = 0.6;
 constexpr int max_refits = 3;
 constexpr double max_reduced_chi2 = 2.0;
 constexpr double worth_a_fit = 6.0;     // logarithm of odds that a better line may gain
-constexpr double min_gain = 6.0;        // of deviance: by chance, the best of 20 places has 2 ln 20
+constexpr double min_gain = 6.0;        // deviance: by chance, the best of 20 places has 2 ln 20
 constexpr double max_residual2 = 16.0;  // that a pixel counts, over its variance
 
 bool has_faint_ends(const Source& source) {
@@ -29,8 +29,8 @@ bool has_faint_ends(const Source& source) {
              detection_limits::faint_per_px * std::sqrt(std::max(source.trail().length_px, 4.0));
 }
 
-/// Calls visit(line, line between two ends, px^2 of pairs of ends that it stands for) for each pair
-/// of ends that is farther apart than the PSF is wide.
+/// Calls visit(line, line between two ends, px^2 of pairs of ends that it stands for) for each
+/// pair of ends that is farther apart than the PSF is wide.
 template <class Visit>
 void for_pairs_of_ends(const Scene& scene, const Source& source, const Visit& visit) {
   const Trail& t = source.trail();

@@ -16,25 +16,25 @@
 namespace dmise {
 namespace {
 
-constexpr double min_share = 0.4;      // of a trail that is not hidden
+constexpr double min_share = 0.4;      // pixels of a trail that are not hidden, over all
 constexpr double chain_px = 40.0;      // longest row of stars, without their trails
-constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
-// Of SNR^2, by which a point, and a streak, must be longer than was seen.
+constexpr double candidate_snr = 4.7;  // a beamlet may be a part of a streak
+// Gain in SNR^2 that a longer line needs: in any direction, and along a streak.
 constexpr double min_gain = 10.0, min_gain_of_streak = 1.0;
 constexpr double short_in_sigmas = 12.0;
-constexpr int max_failures = 30;  // of fits: a frame of so many structures has no faint streaks
+constexpr int max_failures = 30;        // failed fits by which a frame counts as full of structures
 constexpr double template_px = 130.0;   // longest streak whose ends count
-constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
+constexpr double sum_misses_snr = 1.6;  // SNR that the sum misses of such a streak, at most
 constexpr double sum_misses_px = 32.0;  // length up to which the sum may miss so much
-// Of the SNR of a candidate: less is left where a streak that was found since has hidden it.
+// Share of candidate_snr: less is left where a streak that was found since has hidden it.
 constexpr double left_share = 0.8;
-constexpr double star_ratio = 1.2;  // of SNRs, by which a star's trail explains a short candidate
-// Of the SNR along the line: a fit with less went elsewhere.
+constexpr double star_ratio = 1.2;  // so much more SNR on a star's trail explains a short candidate
+// Share of the SNR along the line: a fit with less went elsewhere.
 constexpr double fitted_share = 0.7;
-// Of the least SNR: the fit also fits the sky, which costs some; of a faint patch it costs more.
+// Share of the least SNR: the fit also fits the sky, which costs some; for a faint patch more.
 constexpr double sky_share = 0.85;
 constexpr double max_chi2 = 2.0;     // reduced: with more it is no line of light
-constexpr double piece_share = 0.9;  // of a streak's length, at most, that a piece of it has
+constexpr double piece_share = 0.9;  // a piece is shorter, relative to the streak
 constexpr double arc_px = 100.0;     // from which length on a bend shows at any SNR
 constexpr double bright_arc_px = 15.0, bright_arc_snr = 12.0;  // and with this SNR, as brightness
 constexpr double min_climb_snr = 3.0;  // from which on a climb moves ends and bend, too
@@ -212,7 +212,7 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
       source.snr() > detection_limits::faint_per_px * std::sqrt(std::max(known.length_px, 4.0)))
     return std::nullopt;
   const double known_snr = template_snr(scene, known);
-  // Of a short one the direction may be that of noise.
+  // The direction of a short one may be that of noise.
   const bool is_short = known.length_px < short_in_sigmas * scene.sigma_px;
   std::optional<Source> fit;
   if (source.streak)

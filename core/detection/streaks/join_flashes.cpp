@@ -17,9 +17,9 @@ constexpr std::size_t max_candidates = 150;
 constexpr std::size_t min_flashes = 3;
 constexpr double spacing_share = 0.04, spacing_px = 1.5;     // by which spacings may differ
 constexpr double length_share = 0.25, length_px = 2.0;       // by which lengths may differ
-constexpr double most_brighter = 3.0;                        // of flashes' light a px
-constexpr double off_line_px = 1.0, off_line_share = 0.005;  // of the whole length, for its bend
-constexpr double turn_px = 2.0;          // of a flash's ends from the line through it
+constexpr double most_brighter = 3.0;                        // ratio of two flashes' light per px
+constexpr double off_line_px = 1.0, off_line_share = 0.005;  // and by length, for its bend
+constexpr double turn_px = 2.0;          // from a flash's ends to the line through it
 constexpr double most_on_trails = 0.05;  // share of stars' trails on the line
 
 /// A source as a piece of a line: where it begins and ends along it.

@@ -10,12 +10,12 @@ namespace dmise {
 namespace {
 
 constexpr double min_step_px = 0.5, step_share = 0.125;
-constexpr double slopes_inverse_variance = 3.0;  // of an even distribution from -1 to 1
-constexpr double edge_sigmas = 4.0;              // of the PSF, within which light fades at an end
+constexpr double slopes_inverse_variance = 3.0;  // for slopes spread evenly from -1 to 1
+constexpr double edge_sigmas = 4.0;              // light fades over so much of the PSF at an end
 constexpr double across_sigmas = 2.5;            // within which pixels are used
 constexpr double outlier = 4.0;                  // standard deviations
-constexpr double end_sigmas = 2.0;               // of the PSF, by which an end may miss an edge
-constexpr double gap_sigmas = 5.0;  // of the PSF, of a gap in which nothing is known of a trail
+constexpr double end_sigmas = 2.0;               // an end may miss an edge by so much of the PSF
+constexpr double gap_sigmas = 5.0;  // in a gap of so much of the PSF nothing is known of a trail
 
 /// A pixel in the fit of a line's light per px: its light and weight at a place along the line, by
 /// the share of that light in it and its variance.
@@ -126,7 +126,7 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
 
 LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
     : middle_px_((first.along_px + last.along_px) / 2), length_px_(last.along_px - first.along_px) {
-  // Of the line's shape h, sums of light h, and of weight h^2, times k^0, k^1, k^2. Where light is
+  // For the line's shape h: sums of light h, and of weight h^2, times k^0, k^1, k^2. Where light is
   // beyond the last end, the share beyond the first is 1.
   std::array<double, 3> square;
   for (std::size_t k = 0; k < 3; ++k)

@@ -20,13 +20,13 @@ namespace dmise {
 namespace {
 
 constexpr int max_lines = 12;              // in one component
-constexpr int max_failures = 3;            // of lines in a row, before it is given up
+constexpr int max_failures = 3;            // failed lines in a row, before it is given up
 constexpr double worth_another_px = 50.0;  // a shorter component is given up after one failed line
 constexpr int window_px = 16;              // step of growth
 constexpr double growth_snr = 4.0;         // to continue into the next window
 constexpr double gap_snr = 6.0;            // to continue beyond a gap
 constexpr double min_rise = 2.0;           // over the scatter of lines beside it, before a fit
-constexpr int max_rounds = 6;              // of fitting and growing
+constexpr int max_rounds = 6;              // rounds of fitting and growing
 
 Line line_through(const Point& a, const Point& b) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
@@ -55,7 +55,7 @@ struct PointLanes {
     }
   }
 
-  /// Of the points within `width_px` of a line; may be less where it is not more than `most`.
+  /// Weight of the points within `width_px` of a line; may be less where it is not above `most`.
   double within(const Line& line, double width_px, double most) const {
     std::array<double, lanes> sums{};
     double sum = 0.0;
@@ -235,7 +235,7 @@ std::optional<Source> final_fit(const Scene& scene, const Trail& trail, double m
   return source;
 }
 
-constexpr double flicker_error = 1.0;  // of the model, of light that changes along the line
+constexpr double flicker_error = 1.0;  // relative error of the model for light that changes
 
 /// The final fit of a streak whose light changes along it, with the light of a line of free pieces;
 /// empty if that does not explain the pixels.

@@ -18,7 +18,7 @@ constexpr double next_order = 10.0;  // over SNR^2
 /// How an error of a fitted parameter follows from those of what the ends determine.
 using ByEnds = std::array<double, end_parameters>;
 
-/// Of each parameter of a fit, the background last.
+/// How each parameter of a fit follows from the ends, the background last.
 std::vector<ByEnds> by_ends(const Source& source) {
   const double c = std::cos(source.trail().angle_rad), s = std::sin(source.trail().angle_rad);
   std::vector<ByEnds> out;
@@ -97,11 +97,11 @@ void add_steps_at_ends(Source& source, double sigma_px) {
 }
 
 void add_column_noise(Source& source, double column_noise_e, double sigma_px) {
-  constexpr double max_across_px = 3.0;  // of the columns that its middle passes
+  constexpr double max_across_px = 3.0;  // columns that its middle passes
   const Trail& t = source.trail();
   const double across_px = std::abs(t.length_px * std::cos(t.angle_rad));
   if (!source.streak || !(column_noise_e > 0) || across_px > max_across_px) return;
-  // Of the profile across, columns count as by the matched filter.
+  // The profile across covers as many columns as the matched filter sums.
   const double columns = 2 * sigma_px * std::sqrt(pi);
   const double share = columns / (columns + across_px);
   source.fit.add_cov(2, 2, columns * share * std::pow(column_noise_e * t.length_px, 2));

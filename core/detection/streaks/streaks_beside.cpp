@@ -16,11 +16,11 @@ namespace {
 
 constexpr double reach_sigmas = 6.0;          // across, to which a second streak is searched for
 constexpr double apart_sigmas = 2.3;          // least distance of two
-constexpr double step_px = 0.5;               // of the profile across
-constexpr double min_gain = 40.0;             // of chi2 by the second streak
-constexpr double min_gain_over_width = 10.0;  // of chi2, against a wide body
-constexpr double min_share = 0.1;             // of the amplitude of both that the fainter has
-constexpr double min_overlap = 0.5;           // of the shorter's length
+constexpr double step_px = 0.5;               // between values of the profile across
+constexpr double min_gain = 40.0;             // gain in chi2 by the second streak
+constexpr double min_gain_over_width = 10.0;  // gain in chi2 against a wide body
+constexpr double min_share = 0.1;             // amplitude of the fainter over that of both
+constexpr double min_overlap = 0.5;           // overlap over the shorter's length
 constexpr double max_turn_rad = 0.1;
 constexpr double beside_bent_from_px = 100.0;
 
@@ -30,7 +30,7 @@ struct Profile {
   std::vector<double> light, variance;
 };
 
-/// Of the pixels from `from_px` to `to_px` along the line. Bins without a pixel have no variance.
+/// The profile by pixels `from_px` to `to_px` along the line. Bins without one have no variance.
 Profile profile_of(const std::vector<FitPixel>& pixels, const Line& line, double from_px,
                    double to_px, double reach_px) {
   const int half = int(std::ceil(reach_px / step_px));

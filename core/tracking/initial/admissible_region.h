@@ -10,10 +10,10 @@ namespace dmise {
 
 /// Direction and its rate: what one short arc tells (Milani et al. 2004).
 struct Tracklet {
-  SimTime time;  // of reception
+  SimTime time;  // when the light was received
   Vec<Gcrs> sensor_m, sensor_m_per_s;
   Vec<Gcrs> direction;       // unit
-  Vec<Gcrs> rate_rad_per_s;  // of `direction`, perpendicular to it
+  Vec<Gcrs> rate_rad_per_s;  // change of `direction`, perpendicular to it
 };
 
 /// A straight line in the sky, or an arc if there are more than two, through observations of one

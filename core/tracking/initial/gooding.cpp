@@ -95,7 +95,7 @@ class Problem {
   }
 
  private:
-  /// Of what the path misses by, with respect to the logarithms of both ranges.
+  /// Derivatives of the miss by the logarithms of both ranges.
   bool derivatives(const Eigen::Vector2d& at, Eigen::Matrix2d& slope) const {
     for (int k = 0; k < 2; ++k) {
       constexpr double h = 1e-6;

@@ -10,7 +10,7 @@ namespace dmise {
 struct LambertPath {
   Vec<Gcrs> start_velocity_m_per_s;
   int turns = 0;             // whole turns on the way
-  bool long_period = false;  // of the two paths with the same number of turns, turns >= 1
+  bool long_period = false;  // which of the two paths with the same number of turns, turns >= 1
 };
 
 struct LambertSettings {

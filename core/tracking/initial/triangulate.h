@@ -11,8 +11,8 @@ namespace dmise {
 struct TriangulationSettings {
   double longest_s = 0.5;       // between the first and the last exposure; the object moves
   double min_angle_rad = 1e-3;  // between two lines of sight, at their widest
-  double min_distance_m = 6.4e6, largest_distance_m = 1e9;  // of the position from the centre
-  double min_probability = 1e-6;                            // of lines that miss each other so far
+  double min_distance_m = 6.4e6, largest_distance_m = 1e9;  // from the Earth's centre
+  double min_probability = 1e-6;                            // for lines to miss each other so far
 };
 
 /// A position where lines of sight of two or more sites meet.
@@ -20,7 +20,7 @@ struct TriangulatedPosition {
   SimTime time;  // when the light left
   Vec<Gcrs> position_m;
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
-  double chi2 = 0.0;           // of the residuals
+  double chi2 = 0.0;           // sum over the residuals
   int degrees_of_freedom = 0;  // 2 n - 3
   double angle_rad = 0.0;      // widest between two lines
 };

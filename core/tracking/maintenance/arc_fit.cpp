@@ -13,7 +13,7 @@ namespace {
 constexpr double converged = 0.01;  // chi-square that a step may leave
 // Added to variances of 1: rounding may leave a covariance without a root.
 constexpr double min_relative = 1e-13;
-constexpr double least_apart_s = 1.0;  // of a manoeuvre from both ends of an arc
+constexpr double least_apart_s = 1.0;  // from a manoeuvre to both ends of an arc
 
 /// Root of a covariance; rows that are known have none.
 std::optional<OrbitMatrix> root_of(const OrbitMatrix& covariance) {
@@ -233,7 +233,7 @@ Outcome<OrbitEstimate> ArcFit::estimate_at(SimTime time) const {
   const SimTime there = std::clamp(time, path_->start(), path_->end());
   OrbitEstimate out;
   out.state = moved(path_->at(there), path_->transition(there) * shift_at(there));
-  // Of the root, so that nothing is subtracted.
+  // By the root of the information, so that nothing is subtracted.
   const Eigen::MatrixXd half = information_root_.matrixL().solve(effects_at(there).transpose());
   out.covariance = half.transpose() * half;
   return there < time ? move_on(*forces_, out, time) : Outcome<OrbitEstimate>(out);

@@ -18,7 +18,7 @@ struct ManoeuvreGuess {
 };
 
 /// What the observations after a time say of the state at the start of an arc: the sums of G'G and
-/// of G'r over them, with r the whitened residuals and G their derivatives by that state.
+/// G'r over them, with r the whitened residuals and G their derivatives by that state.
 struct ArcInformation {
   OrbitMatrix squares = OrbitMatrix::Zero();
   OrbitVector right = OrbitVector::Zero();
@@ -33,7 +33,7 @@ struct ArcUnknown {
 
 /// Prior, observations, noise and manoeuvres of one object, and the orbit that fits them best:
 /// least squares over state, scales of drag and sunlight, changes of velocity that stand for what
-/// the forces leave out, and manoeuvres. Of every unknown a prior is known, so that any number of
+/// the forces leave out, and manoeuvres. Every unknown has a prior, so that any number of
 /// observations has a solution.
 class ArcFit {
  public:
@@ -69,7 +69,7 @@ class ArcFit {
   // What a search for manoeuvres needs.
   const ArcInformation& information_after(SimTime time) const;
   const std::vector<ArcUnknown>& unknowns() const { return unknowns_; }
-  double value(long i) const { return values_[i]; }  // of an unknown
+  double value(long i) const { return values_[i]; }  // fitted value of an unknown
 
  private:
   ArcFit(const MaintenanceForces& forces, const OrbitEstimate& prior)
@@ -91,16 +91,16 @@ class ArcFit {
   OrbitEstimate prior_;
   std::vector<AngleObservation> observations_;
   std::vector<ManoeuvreGuess> manoeuvres_;
-  std::vector<SimTime> guessed_times_;          // of the manoeuvres' priors
-  OrbitMatrix root_ = OrbitMatrix::Identity();  // of the prior's covariance
+  std::vector<SimTime> guessed_times_;          // times in the manoeuvres' priors
+  OrbitMatrix root_ = OrbitMatrix::Identity();  // root of the prior's covariance
   OrbitState start_;
   std::vector<SimTime> noise_times_;
-  Eigen::VectorXd noise_;   // of changes of velocity over their priors' errors
-  Eigen::VectorXd values_;  // of all unknowns
+  Eigen::VectorXd noise_;   // changes of velocity over their priors' errors
+  Eigen::VectorXd values_;  // all unknowns
   std::optional<ArcPath> path_;
   std::vector<ArcUnknown> unknowns_;
   std::vector<Eigen::Vector2d> residuals_;
-  std::vector<ArcInformation> after_;  // of the observations from each on; the last is empty
+  std::vector<ArcInformation> after_;  // by the observations from each on; the last is empty
   Eigen::VectorXd step_;
   Eigen::LLT<Eigen::MatrixXd> information_root_;
   double cost_ = 0.0, left_ = 0.0;

@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-constexpr double step_s = 300.0;  // of the chain of derivatives
+constexpr double step_s = 300.0;  // between states of the chain of derivatives
 // Derivatives need less than paths: a step of 10 cm changes them by 1e-8 of themselves.
 constexpr PropagationSettings derivative_steps{.position_tolerance_m = 0.1};
 // A third of the noise that is taken for the forces at the best is 1 m after a day.

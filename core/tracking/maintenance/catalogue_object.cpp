@@ -9,10 +9,10 @@ namespace {
 constexpr double candidate_s = 600.0;     // between times at which a manoeuvre is tried
 constexpr double shift_s = 900.0;         // by which a fit may move it from there
 constexpr double likelier = 2.0;          // in the sum of squares, of a time that takes its place
-constexpr double first_candidate = 0.6;   // of the gain that is wanted, to first order
-constexpr double settled_s = 8 * 3600.0;  // of observations after which manoeuvres are looked for
+constexpr double first_candidate = 0.6;   // gain to first order, over the wanted one
+constexpr double settled_s = 8 * 3600.0;  // observations' time before manoeuvres are looked for
 constexpr int settled_arcs = 3;
-constexpr double walk_per_day = 0.04;  // of the prior variance of drag and sunlight
+constexpr double walk_per_day = 0.04;  // growth of drag's and sunlight's variance, over the prior's
 
 std::vector<ManoeuvreGuess> guesses(const ArcFit& fit) {
   std::vector<ManoeuvreGuess> out = fit.manoeuvres();

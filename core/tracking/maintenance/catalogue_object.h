@@ -10,15 +10,15 @@ namespace dmise {
 struct FoundManoeuvre {
   SimTime found;              // time of the observation by which it was found
   VelocityChange change;      // along radius, motion and normal
-  double time_sigma_s = 0.0;  // of all times at which it may have been
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the change [m^2/s^2]
+  double time_sigma_s = 0.0;  // spread of all times at which it may have been
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // errors of the change [m^2/s^2]
   double gain = 0.0;                                     // by which it lowers the sum of squares
   double confidence = 0.0;  // probability that noise would not have shown it, [0, 1]
 };
 
 /// What an arc of observations told of an object.
 struct ArcNews {
-  double innovation_d2 = 0.0;  // of the whole arc: chi-square of `degrees`, if nothing happened
+  double innovation_d2 = 0.0;  // chi-square of `degrees` by the whole arc, if nothing happened
   int degrees = 0;
   std::size_t outliers = 0;  // observations that were left out
   std::optional<FoundManoeuvre> manoeuvre;
@@ -35,7 +35,7 @@ class CatalogueObject {
   /// early or without a path, and stays as it was.
   Outcome<ArcNews> take(const std::vector<AngleObservation>& arc);
 
-  SimTime time() const;  // of the last observation, or of the prior
+  SimTime time() const;  // the last observation's, or the prior's
   Outcome<OrbitEstimate> estimate_at(SimTime time) const;
   /// All manoeuvres so far, by the time at which they were found. The latest are estimated anew by
   /// each arc.
@@ -57,12 +57,12 @@ class CatalogueObject {
 
   const MaintenanceForces* forces_;
   OrbitEstimate prior_;
-  Eigen::Vector2d scale_variances_;   // of the prior's drag and sunlight
+  Eigen::Vector2d scale_variances_;   // prior variances of drag and sunlight
   std::optional<ArcFit> fit_;         // none before the first arc
   std::vector<OrbitEstimate> after_;  // the arcs of the window
   int arcs_ = 0;
   std::vector<FoundManoeuvre> manoeuvres_;
-  std::size_t first_fitted_ = 0;  // of manoeuvres_: those from it on are unknowns of the fit
+  std::size_t first_fitted_ = 0;  // manoeuvres_ from it on are unknowns of the fit
 };
 
 }  // namespace dmise

@@ -10,8 +10,8 @@
 
 namespace dmise {
 
-/// What the forces of an orbit leave out, as white noise of the acceleration. A share of drag and
-/// of sunlight is taken as unknown for a time, since the air and the attitude change within it.
+/// What the forces of an orbit leave out, as white noise of the acceleration. Shares of drag and
+/// sunlight are taken as unknown for a time, since the air and the attitude change within it.
 struct ForceNoise {
   // Along each axis of the orbit [m^2/s^3]: gravity beyond its degree, ocean tides, light of the
   // Earth.
@@ -25,12 +25,12 @@ struct MaintenanceSettings {
   ForceNoise noise;
   double noise_every_s = 3000.0;  // between changes of velocity that stand for the noise
   double window_s = 36 * 3600.0;  // longest that observations are kept for a fit
-  double kept_s = 20 * 3600.0;    // of these when older ones are given up
+  double kept_s = 20 * 3600.0;    // what is kept of them when older ones are given up
   // By which a manoeuvre must lower the sum of squares; chi-square of 3 degrees of freedom at the
   // best of many times.
   double manoeuvre_gain = 32.0;
   double manoeuvre_sigma_m_per_s = 3.0;  // expected size of a manoeuvre, along each axis
-  double outlier_d2 = 36.0;              // of an observation that is left out
+  double outlier_d2 = 36.0;              // an observation beyond is left out
 };
 
 /// Forces by which orbits of a catalogue are kept: those of a flight for paths, simpler ones for
