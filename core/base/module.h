@@ -5,7 +5,7 @@ namespace dmise {
 
 /// A shared object that is loaded when it is first needed.
 struct Module {
-  const char* name;  // of the shared object: libdmise_NAME.so in a lib above this code's file
+  const char* name;         // NAME of libdmise_NAME.so, in a lib above this code's file
   const char* environment;  // names another file
 };
 

@@ -17,6 +17,6 @@ inline constexpr double speed_of_light_m_per_s = 299792458.0;
 inline constexpr double planck_j_s = 6.62607015e-34;       // SI 2019
 inline constexpr double boltzmann_j_per_k = 1.380649e-23;  // SI 2019
 inline constexpr double day_s = 86400.0;
-inline constexpr double fwhm_per_sigma = 2.3548200450309493;  // of a Gaussian: 2 sqrt(2 ln 2)
+inline constexpr double fwhm_per_sigma = 2.3548200450309493;  // for a Gaussian: 2 sqrt(2 ln 2)
 
 }  // namespace dmise

@@ -14,8 +14,8 @@ namespace dmise {
 namespace {
 
 constexpr double margin_s = 300.0;                  // about the run: light time, exposures
-constexpr double farthest_epoch_s = 100 * 86400.0;  // of a state from the run
-constexpr double noted_m = 1.0;                     // of a jump within a tick
+constexpr double farthest_epoch_s = 100 * 86400.0;  // most between a stated orbit and the run
+constexpr double noted_m = 1.0;                     // least error within a tick that is warned of
 
 /// Flies the objects of one scenario.
 class Flyer {

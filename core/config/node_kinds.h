@@ -20,7 +20,7 @@ struct NodeKind {
   bool (*wanted)(const Scenario&);
   bool writes_products = false;  // into the directory of the run
   bool each_sensor = false;
-  bool each_own_node = false;  // of `nodes` that move or turn objects: runs a program of the user's
+  bool each_own_node = false;  // one for each program of the user's that moves or turns objects
 };
 
 /// The table of kinds, in the order in which their nodes are started and called.
@@ -31,8 +31,8 @@ const NodeKind* kind_of_node(const std::string& name, const Scenario& scenario);
 std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario);
 /// Names of all nodes that the scenario needs.
 std::vector<std::string> nodes_of(const Scenario& scenario);
-/// Whether the process of such a node writes into the directory of the run: products, or a journal
-/// of what it hears.
+/// Whether the process of such a node writes products, or a journal of what it hears, into the
+/// directory of the run.
 bool writes_files(const NodeKind& kind, const std::string& name, const Scenario& scenario);
 /// Whether the process of such a node starts a program of the user's.
 bool starts_program(const NodeKind& kind, const std::string& name, const Scenario& scenario);

@@ -18,9 +18,9 @@ namespace dmise {
 namespace {
 
 constexpr double beyond_run_s = 300.0;     // about the run: light time, exposures
-constexpr double max_eccentricity = 0.01;  // of a chief that must be on a circle
-constexpr double step_rad = 0.02;          // of the chief's orbit between states
-constexpr double noted_part = 0.01;        // of the distance, of an error
+constexpr double max_eccentricity = 0.01;  // up to which a chief's orbit counts as a circle
+constexpr double step_rad = 0.02;          // turn of the chief between states
+constexpr double noted_part = 0.01;        // least error over distance that is warned of
 
 struct Span {
   double from_s, to_s;

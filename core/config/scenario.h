@@ -27,7 +27,7 @@ struct NetworkConfig {
   OnSilentNode on_silent_node = OnSilentNode::fail;
   double silent_after_s = 5.0;
   double join_within_s = 30.0;
-  int restarts = 5;        // of each node, under `restart`
+  int restarts = 5;        // limit for each node, under `restart`
   double real_time = 0.0;  // simulated seconds per second; 0: as fast as possible
   // States are published for subscribers that are not nodes of the scenario as well.
   bool publish_states = true;
@@ -66,7 +66,7 @@ struct FusionConfig {
   std::string catalogue_where = {};           // `file:line:column: fusion.catalogue`, for messages
   std::optional<double> age_days = {};        // least age of these at the start of the run
   std::vector<std::string> not_in_catalogue;  // names or numbers of objects that it does not know
-  std::vector<std::string> not_in_catalogue_where = {};  // of each, for messages
+  std::vector<std::string> not_in_catalogue_where = {};  // place of each, for messages
   std::string where = {};                                // `file:line:column: fusion`
 };
 
@@ -76,7 +76,7 @@ struct Scenario {
   std::string start_utc;  // ISO 8601
   SimTime duration;
   SimTime tick;
-  HermiteOrder interpolation = HermiteOrder::cubic;  // of objects between ticks
+  HermiteOrder interpolation = HermiteOrder::cubic;  // between the states of objects at ticks
   std::uint64_t seed = 1;
   std::string earth_orientation_path;  // IERS finals file, may be empty
   EarthConfig earth;
@@ -86,7 +86,7 @@ struct Scenario {
   std::string star_catalogue_path;     // empty: no stars
   std::string star_catalogue_named;
   std::string star_catalogue_where;  // `file:line:column: stars.catalogue`, for messages
-  std::string star_variables_path;   // of variable stars, empty: none
+  std::string star_variables_path;   // catalogue of variable stars; empty: none
   std::string star_variables_where;  // `file:line:column: stars.variables`, for messages
   double faintest_star_mag = 9.5;
   std::optional<double> synthetic_stars_to_v_mag = {};  // none, or infinity: as above

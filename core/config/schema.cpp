@@ -109,7 +109,7 @@ class SchemaWriter {
   }
 
   void forms(const Forms& forms) {
-    const bool words = has(forms, Kind::number);  // of texts: a number has its own form
+    const bool words = has(forms, Kind::number);  // a number that has its own form is no text
     if (forms.size() == 1 && !kind_.draws) {
       form(forms[0], words);
       return;

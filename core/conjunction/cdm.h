@@ -6,7 +6,7 @@
 namespace dmise {
 
 struct CdmObject {
-  std::string number, name, designator;  // of the catalogue, may be empty but for the number
+  std::string number, name, designator;  // as catalogued; may be empty but for the number
 };
 
 /// What a Conjunction Data Message says beside the encounter.

@@ -34,7 +34,7 @@ std::optional<CloseApproach> refined(const std::vector<MeanElements>& pair, cons
     const Encounter now{both.estimate(0), both.estimate(1), search.radius_m};
     const double step = to_closest_s(now);
     if (std::fabs(step) < found_to_s) {
-      if (t < 0 || t >= step_s) return std::nullopt;  // of another step
+      if (t < 0 || t >= step_s) return std::nullopt;  // another step finds it
       const double miss_m = norm(now.second.state.position_m - now.first.state.position_m);
       return miss_m < search.within_m ? std::optional(CloseApproach{0, 0, now}) : std::nullopt;
     }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double min_sigma_m = 1e-3;
 constexpr double reach_sigmas = 9.0;  // beyond which the density is below 1e-18
-constexpr int intervals = 2000;       // of Simpson's rule
+constexpr int intervals = 2000;       // for Simpson's rule
 
 struct Line {
   Eigen::Vector3d position_m, velocity_m_per_s;

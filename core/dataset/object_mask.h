@@ -9,7 +9,7 @@ namespace dmise {
 
 /// The pixels of one object.
 struct ObjectMask {
-  int columns = 0, rows = 0;                     // of the image
+  int columns = 0, rows = 0;                     // size of the image
   std::vector<std::uint32_t> pixels;             // row * columns + column, ascending
   double covered_e = 0.0, all_e = 0.0;           // light in these pixels, and in the image
   int left = 0, top = 0, right = 0, bottom = 0;  // first pixel, one past the last

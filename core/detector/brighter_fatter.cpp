@@ -12,8 +12,8 @@ namespace {
 
 constexpr int reach = 3;  // pixels on either side of a boundary
 
-/// Power of the distance with which the pull of a charge falls: 3/2 agrees with GalSim's solutions
-/// of Poisson's equation for spots of 2 to 6 px to 6 %.
+/// Power of the distance with which the pull of a charge falls: 3/2 agrees to 6 % with GalSim's
+/// solutions of Poisson's equation for spots of 2 to 6 px.
 constexpr double falloff = 1.5;
 
 /// Displacement of the boundary between (0, 0) and (1, 0) towards the charge of pixel (i, j), over

@@ -13,7 +13,7 @@ struct BrighterFatter {
       "brighter_fatter", "charge moves the boundaries of its pixel, and bright sources are wider",
       "widths of sources near the full well too small by about 1 %",
       "Antilogus et al. 2014, JINST 9, C03048; Guyonnet et al. 2015, A&A 575, A41"};
-  double brighter_fatter_per_e = 0.0;  // of a pixel, by its own charge; 0: none
+  double brighter_fatter_per_e = 0.0;  // boundaries move by a pixel's own charge [px/e-]; 0: none
   bool operator==(const BrighterFatter&) const = default;
 
   static std::span<const ParameterOf<BrighterFatter>> parameters();

@@ -11,7 +11,7 @@ struct DarkCurrent {
                                      "Janesick 2001, Scientific Charge-Coupled Devices"};
   double dark_e_per_s = 0.0;      // at dark_reference_c
   double dark_reference_c = 0.0;  // [deg C]
-  double temperature_c = 0.0;     // of the detector [deg C]
+  double temperature_c = 0.0;     // the detector's [deg C]
   double dark_doubling_k = 0.0;   // temperature rise that doubles dark current; 0: constant
   bool operator==(const DarkCurrent&) const = default;
 

@@ -17,7 +17,7 @@ struct HotPixels {
   static constexpr EffectFacts facts{"hot_pixels",
                                      "some pixels have far more dark current than others",
                                      "no false points", "exponential distribution, assumed"};
-  double hot_pixel_fraction = 0.0;  // of all pixels, 0..1
+  double hot_pixel_fraction = 0.0;  // share of all pixels, 0..1
   double hot_pixel_e_per_s = 0.0;   // mean of their extra dark current at dark_reference_c
   bool operator==(const HotPixels&) const = default;
 

@@ -41,8 +41,8 @@ struct Persistence {
                                      "charge trapped in one exposure appears in the next ones",
                                      "no ghosts: 1e-3 to 1e-2 of what was collected",
                                      "Smith et al. 2008, Proc. SPIE 7021, 70210J"};
-  double persistence_fraction = 0.0;  // of the charge collected is trapped, 0..1 ...
-  double persistence_s = 0.0;         // ... and freed with this time constant
+  double persistence_fraction = 0.0;  // share of the charge that is trapped, 0..1
+  double persistence_s = 0.0;         // time constant with which it is freed
   bool operator==(const Persistence&) const = default;
 
   static std::span<const ParameterOf<Persistence>> parameters();

@@ -26,8 +26,8 @@ struct PhotonNoise {
   bool applies(const Detector&) const { return photons_are_drawn; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
 
-  /// Of the Gaussian draw, which is held at 0 where read noise does not belong to it: what its 3
-  /// sigma quantile lacks of a Poisson deviate with read noise, by the skewness (Cornish & Fisher
+  /// What the Gaussian draw, held at 0 where read noise does not belong to it, lacks at its 3
+  /// sigma quantile of a Poisson deviate with read noise, by the skewness (Cornish & Fisher
   /// 1938), in the worst pixel at least as bright as the sky.
   static ErrorBound error(int level, const PlanFacts& f);
   /// With the draws of dark current and read noise, which the Gaussian one replaces.

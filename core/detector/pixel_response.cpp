@@ -9,11 +9,11 @@
 namespace dmise {
 
 ErrorBound PixelResponse::error(int, const PlanFacts& f) const {
-  // Of the background are also pixels that sources light by half of their noise.
+  // Pixels that sources light by half of their noise count as background, too.
   ErrorBound error = f.without_light(
       [&](const SkySample& s) { return 5.5 * prnu_rms * (s.sky_e + 0.5 * s.noise_e); });
   error.photometry_mag = 1.086 * 4.0 * prnu_rms * f.pattern_share();
-  // Of a point its own width, of a trail half of its length over the root of three.
+  // A point's lever is its own width, a trail's half of its length over the root of three.
   const double along_px = std::max(1.0, f.fwhm_px) + 0.29 * f.longest_trail_px;
   error.position_px = 4.0 * prnu_rms * f.pattern_share(f.longest_trail_px) * along_px;
   return error;

@@ -16,7 +16,7 @@ struct PixelResponse {
   void switch_off() { prnu_rms = 0.0; }
   bool applies(const Detector&) const { return prnu_rms > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
-  /// Of a source four deviations of the pattern under it, of the sky five and a half of a pixel:
+  /// A source errs by four deviations of the pattern under it, a pixel of sky by five and a half:
   /// one source in 16,000 and one pixel in 26 million are beyond.
   ErrorBound error(int, const PlanFacts& f) const;
   static double cost_s(int level, const PlanFacts& f);

@@ -10,9 +10,9 @@ namespace dmise {
 /// end of the exposure. The signal is the slope of a line through them by least squares, or, with
 /// Fowler sampling, the mean of the last reads less that of the first ones; times the exposure.
 /// Each read has the read noise. Reads of one ramp share the noise of the reset, which cancels in
-/// a difference of reads, but not in a single read. Electrons come at uniform times, so that reads
-/// of a ramp are not independent: a fit has more shot noise than the last read. A cosmic ray is a
-/// jump at its time.
+/// a difference of reads, but not in a single read. Electrons come at uniform times, so that a
+/// ramp's reads are not independent: a fit has more shot noise than the last read. A cosmic ray is
+/// a jump at its time.
 struct Ramp {
   static constexpr EffectFacts facts{
       "ramp", "the signal is fitted to many reads up the ramp of charge",
@@ -28,8 +28,8 @@ struct Ramp {
   void switch_off() { ramp_reads = 0; }
   bool applies(const Detector&) const { return ramp_reads > 0; }
   struct Prepared {
-    std::vector<double> weights;  // of charge that comes between two reads; their mean is 1
-    double variance = 0.0;        // of the weights
+    std::vector<double> weights;  // for charge that comes between two reads; their mean is 1
+    double variance = 0.0;        // mean square of the weights less 1
     std::vector<CosmicCharge> jumps;
   };
   Prepared prepare(const ExposureFacts& exposed) const;

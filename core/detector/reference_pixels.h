@@ -34,7 +34,7 @@ void visit_border(int border_px, int columns, int rows, std::size_t first, std::
     if (y < border || y + border >= std::size_t(rows) || 2 * border >= width) {
       visit(i, end);
     } else {
-      const auto at = [&](std::size_t column) {  // of this row
+      const auto at = [&](std::size_t column) {  // index of a place in this row
         return std::min(end, column > x ? i + (column - x) : i);
       };
       visit(i, at(border));

@@ -14,7 +14,7 @@ namespace {
 /// Mean over all directions of the squared transfer function of a pixel at `nu` cycles per pixel:
 /// one for the light's integration over pixels, one for that of the circle over them.
 double pixels_squared(double nu_per_px) {
-  constexpr int directions = 24;  // of an eighth of the circle
+  constexpr int directions = 24;  // over an eighth of the circle
   double sum = 0.0;
   for (int i = 0; i < directions; ++i) {
     const double angle = 0.25 * pi * (i + 0.5) / directions;

@@ -6,8 +6,8 @@ namespace dmise {
 
 /// Fraction of a point's light that falls in an aperture about it, where pixels count by their area
 /// within: the mean over places of the point on its pixel, from the transfer functions of optics
-/// and pixel at `wavelength_m`. Of frames of this program, whose point spread ends where the plan
-/// of the blur says. Known to 1e-3 for radii of 3 px and more. Throws `Error` for optics with
+/// and pixel at `wavelength_m`. It is known to 1e-3 for radii of 3 px and more in frames of this
+/// program, whose point spread ends where the plan of the blur says. Throws `Error` for optics with
 /// aberrations, whose point spread is not round, and for a radius <= 0.
 double aperture_fraction(const Optics& optics, double wavelength_m, double radius_px);
 

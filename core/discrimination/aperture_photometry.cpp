@@ -95,7 +95,7 @@ ApertureFlux aperture_flux(const CountImage& counts, const CountScale& scale, Pi
     throw Error("aperture: the ring about (" + std::to_string(centre.x_px) + ", " +
                 std::to_string(centre.y_px) + ") is not wholly in the frame");
   ApertureFlux result;
-  double sum_e = 0.0, squares = 0.0;  // of weights
+  double sum_e = 0.0, squares = 0.0;  // weighted light; squares of the weights
   std::vector<double> ring;
   for (int y = int(std::floor(centre.y_px - reach)); y <= int(std::ceil(centre.y_px + reach)); ++y)
     for (int x = int(std::floor(centre.x_px - reach)); x <= int(std::ceil(centre.x_px + reach));

@@ -9,7 +9,7 @@ namespace dmise {
 /// A circle about a source, and a ring about it from which the background is taken [px].
 struct Aperture {
   double radius_px = 4.0;
-  double inner_px = 8.0, outer_px = 16.0;  // of the ring: pixels whose centres are within
+  double inner_px = 8.0, outer_px = 16.0;  // the ring: pixels whose centres are within
 };
 
 /// Throws `Error` "aperture: KEY: reason, got value" unless 0.5 <= radius <= inner < outer <= 500.
@@ -25,10 +25,10 @@ struct CountScale {
 /// Light in an aperture.
 struct ApertureFlux {
   double flux_e = 0.0;              // above the background
-  double sigma_e = 0.0;             // of it
+  double sigma_e = 0.0;             // standard deviation of `flux_e`
   double background_e = 0.0;        // mean of a pixel of the ring
   double background_sigma_e = 0.0;  // standard deviation of a pixel of the ring
-  double area_px = 0.0;             // of the aperture
+  double area_px = 0.0;             // sum of the pixels' parts in the aperture
   std::size_t ring_pixels = 0;      // that were not clipped
   bool saturated = false;           // a pixel of the aperture
 };

@@ -15,10 +15,10 @@ struct ObjectSignature {
   std::string object;
   std::size_t samples = 0;
   std::vector<Measured> summed;      // light in each band
-  std::vector<Measured> ratios;      // of all samples together, by band from the second on
+  std::vector<Measured> ratios;      // all samples together, by band from the second on
   std::vector<double> scatter;       // standard deviation of the samples' ratios, likewise
   std::vector<double> sample_sigma;  // root mean square of what each sample states for it
-  std::vector<MaterialFit> fits;     // of `summed`, most probable first
+  std::vector<MaterialFit> fits;     // materials that fit `summed`, most probable first
 };
 
 /// Signatures of all objects. `confusion` counts which material each sample of an object of known

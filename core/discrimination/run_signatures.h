@@ -19,7 +19,7 @@ struct SpectralSensor {
 
 /// What a sensor measured of an object in one frame.
 struct BandMeasurement {
-  PixelPosition centre;  // of the aperture
+  PixelPosition centre;  // where the aperture is
   ApertureFlux flux;
   Measured light;  // `reflected`
 };

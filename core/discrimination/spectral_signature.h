@@ -7,8 +7,8 @@ struct Measured {
 };
 
 /// Electrons that the Sun itself at 1 au would give in an exposure: the factor between a flux and
-/// the share of the sunlight that an object throws to the sensor, R A F / d^2. `zero_point_mag`: V
-/// of sunlight that gives 1 e-/s in the band, as in the headers of frames; the Sun's spectrum (ASTM
+/// the share of the sunlight that an object throws to the sensor, R A F / d^2. Sunlight with V =
+/// `zero_point_mag` gives 1 e-/s in the band, as in the headers of frames; the Sun's spectrum (ASTM
 /// E490) is in it.
 double full_sunlight_e(double zero_point_mag, double exposure_s);
 

@@ -7,10 +7,10 @@ namespace dmise {
 /// Bounds of the differences between one exposure and its reference, in the units in which frames
 /// are used.
 struct ErrorBound {
-  double photometry_mag = 0.0;    // of any source in the frame
-  double position_px = 0.0;       // of any source's centroid
-  double background_sigma = 0.0;  // of any pixel between sources, in units of its noise
-  double noise = 0.0;             // of any pixel's noise, relative
+  double photometry_mag = 0.0;    // worst source in the frame
+  double position_px = 0.0;       // worst centroid of a source
+  double background_sigma = 0.0;  // worst pixel between sources, in units of its noise
+  double noise = 0.0;             // worst pixel, relative
 
   ErrorBound& operator+=(const ErrorBound& o) {
     photometry_mag += o.photometry_mag;
@@ -43,7 +43,7 @@ inline constexpr ErrorKind error_kinds[] = {
     {"noise", "relative", &ErrorBound::noise, "Greatest error of the noise of a pixel"}};
 
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
-/// Of an effect that must not be left out.
+/// An effect that must not be left out has this error.
 inline constexpr ErrorBound not_bounded{unbounded, unbounded, unbounded, unbounded};
 
 /// What a scenario asks of its frames: the cheapest plan within a budget of errors, or the most

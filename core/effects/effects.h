@@ -18,7 +18,7 @@ struct EffectFacts {
   std::string_view name;          // as in YAML
   std::string_view what;          // one line: what it does
   std::string_view error_if_off;  // the size of what is left out
-  std::string_view source;        // of the model
+  std::string_view source;        // where the model comes from
   bool usual = true;              // runs unless switched off; else only when switched on
   bool switchable = true;         // else it has other choices than on and off
   std::span<const std::string_view> levels = off_and_on;  // by rising accuracy, to the reference
@@ -110,7 +110,7 @@ class EffectSet {
   bool operator==(const EffectSet&) const = default;
 
  private:
-  std::map<std::string_view, int> level_;  // of effects whose level is not the usual one
+  std::map<std::string_view, int> level_;  // only effects whose level is not the usual one
   std::set<std::string_view> forced_;
   int snapshots_ = 0;
   bool opengl_ = false;

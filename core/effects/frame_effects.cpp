@@ -119,7 +119,7 @@ double SpaceObjects::cost_s(int level, const PlanFacts& f) {
 }
 
 ErrorBound ResolvedShapes::error(int level, const PlanFacts& f) {
-  double largest_px = 0.0;  // of those that are points
+  double largest_px = 0.0;  // among shapes drawn as points
   for (const double radius_px : f.shape_radius_px)
     if (radius_px <= tolerance_px[std::size_t(level)]) largest_px = std::max(largest_px, radius_px);
   return f.shifted_objects(largest_px * f.pixel_rad);

@@ -121,7 +121,7 @@ struct PsfWavelengths {
   /// Returns how many wavelengths a level has: no fewer than the camera asks for.
   static int wavelengths(int level, const PlanFacts& f);
   /// A hundredth of the cost of kernels that are kept, since they are computed once for many
-  /// frames. Of kernels that the air changes the first wavelength is charged to turbulence.
+  /// frames. Where the air changes kernels, the first wavelength is charged to turbulence.
   static double cost_s(int level, const PlanFacts& f);
 };
 

@@ -14,7 +14,7 @@ namespace dmise {
 /// A sample of the sky by which an exposure is planned: light and noise of a pixel there [e-].
 struct SkySample {
   double sky_e = 0.0;                           // all parts
-  double noise_e = 1.0;                         // of sky, dark current and read-out, > 0
+  double noise_e = 1.0;                         // from sky, dark current and read-out, > 0
   std::array<double, sky_part_count> part_e{};  // in the order of SkyPart
 
   double of(SkyPart part) const { return part_e[static_cast<std::size_t>(part)]; }
@@ -28,7 +28,7 @@ struct AirFacts {
   double airy_px = 1.0;             // wavelength / aperture
   double apertures_per_r0 = 1.0;    // aperture / r0
   double apertures_blown = 0.0;     // way of the wind in the exposure / aperture
-  int screens = 0;                  // of short exposures; 0: exposures are long
+  int screens = 0;                  // in a short exposure; 0: exposures are long
   double still_peak_share = 1.0;    // as `peak_share`, without turbulence
   bool still_is_deposited = false;  // without turbulence the blur takes no transform
   bool can_be_off = true;           // the blur can be computed without it
@@ -46,9 +46,9 @@ struct PlanFacts {
   double relative_bandwidth = 0.2;  // width over centre
   double fwhm_px = 1.0;
   double peak_share = 1.0;  // largest share of a point's light in its brightest pixel
-  int screens = 0;          // of turbulence, in short exposures: a point is a cloud of speckles
+  int screens = 0;          // in a short exposure, which shows a point as a cloud of speckles
   double speckle_px = 1.0;  // width of the finest structure of a point
-  double ghost_pixel_share = 0.0;  // of a point's light, in a pixel of the lens's ghost of it
+  double ghost_pixel_share = 0.0;  // point's light in a pixel of its ghost by the lens
   /// Where kernels of the blur end, and a pixel's share of a point's light there without the taper
   /// to 0 over their outer half.
   double kernel_end_px = unbounded, kernel_end_share = 0.0;
@@ -81,13 +81,13 @@ struct PlanFacts {
   double moon_refraction_rad = 0.0;
   bool moon_is_down = false;  // below the horizon without refraction
   // Directions.
-  double nearest_sun_rad = 3.0;                                      // of the field's edge
+  double nearest_sun_rad = 3.0;                                      // from the field's edge
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
   bool sees_horizon = false;                                         // the Earth is in the field
-  double disc_e = 0.0;            // of the brightest pixel of Sun, Moon and Earth in the field
-  double stray_light_e = 0.0;     // of a pixel
-  double thermal_optics_e = 0.0;  // of the brightest pixel
-  double limb_airglow_e = 0.0, limb_air_e = 0.0;  // of the brightest pixel of the Earth's limb
+  double disc_e = 0.0;            // brightest pixel of Sun, Moon and Earth in the field
+  double stray_light_e = 0.0;     // in a pixel
+  double thermal_optics_e = 0.0;  // brightest pixel
+  double limb_airglow_e = 0.0, limb_air_e = 0.0;  // brightest pixel of the Earth's limb
   double min_illumination = 1.0;                  // by vignetting
   double illumination_slope_per_px = 0.0;         // steepest, relative, of a vignetting by a table
   // What the sensor does not know of itself.
@@ -101,7 +101,7 @@ struct PlanFacts {
   double brightest_star_e = 0.0;                       // light of one star in the field
   std::array<double, star_limits> brightest_left_e{};  // light of the brightest beyond each limit
   double star_trail_px = 0.0;                          // shortest
-  double star_shift_rad = 0.0;  // of proper motion since the catalogue's epoch, largest
+  double star_shift_rad = 0.0;  // largest proper motion since the catalogue's epoch
   double star_parallax_rad = 0.0;
   /// Faint starlight of a pixel, most, with stars drawn to each limit.
   std::array<double, star_limits> starlight_e{};
@@ -113,24 +113,24 @@ struct PlanFacts {
   bool near_shadow = false;     // an object is in the Earth's shadow or near it
   bool near_shadow_of_air = false;  // sunlight to an object passes the Earth's air, or may
   double brightest_object_e = 0.0;
-  std::vector<double> shape_radius_px;  // of each object with a shape
+  std::vector<double> shape_radius_px;  // each object with a shape has one
   double narrowest_object_px = 0.0;     // 0: a point
   double hidden_sky_px = 0.0;           // largest number of pixels of sky behind an object
   bool faint_objects = false;           // an object may be too faint to count as a source
-  double longest_trail_px = 0.0;        // of any source, within the frame
+  double longest_trail_px = 0.0;        // any source's, within the frame
   /// Objects that their range puts out of focus: the share of their light that is elsewhere than in
   /// focus, and the cost of drawing one so.
   struct OutOfFocus {
     double misplaced = 0.0, cost_s = 0.0;
   };
   std::vector<OutOfFocus> out_of_focus;
-  static constexpr double glint_e = 1e9;  // of a shape, in a pixel
+  static constexpr double glint_e = 1e9;  // most in a pixel of a shape
   AirFacts air;
   // The blur.
   static constexpr double transform_pixel_s = 2e-9;
-  int min_wavelengths = 1;      // of the band, by the camera
+  int min_wavelengths = 1;      // over the band, by the camera
   bool kernels_change = false;  // with every exposure
-  double kernel_s = 0.0;        // of all kernels of one wavelength
+  double kernel_s = 0.0;        // cost of all kernels of one wavelength
   /// Largest differences between the kernels of each level of `psf_field` and the true blur of a
   /// place: share of a point's light that is misplaced, and displacement of its centroid.
   static constexpr std::size_t field_levels = 4;
@@ -284,7 +284,7 @@ struct PlanFacts {
     return (1.0 + 2.0 * std::exp(-0.5 / (sigma * sigma))) / (sigma * std::sqrt(2.0 * pi));
   }
   ErrorBound shifted(double angle_rad, bool faint, double trail_px) const {
-    constexpr double off_axis = 1.08, steepest = 0.607;  // of a Gaussian
+    constexpr double off_axis = 1.08, steepest = 0.607;  // a Gaussian's slope is at most e^-0.5
     const double of_light =
         (screens > 0 ? 0.15 : 0.02) + 8.0 / cloud_detail_px;  // clouds: magnitudes a piece
     const double width_px = screens > 0 ? std::min(sigma_px(), speckle_px / 2.355) : sigma_px();

@@ -77,7 +77,7 @@ std::string csv_of(const std::string& path, const RunProducts& run) {
     if (sensor == row.end() || !sensor->is_string() || frame == row.end() ||
         !frame->is_number_unsigned() ||
         !run.frame_index.contains({sensor->get<std::string>(), frame->get<std::uint32_t>()}))
-      return;  // of a sensor that is not wanted
+      return;  // its sensor is not wanted
     table.begin_row();
     put("", row, table);
   };

@@ -11,9 +11,9 @@
 namespace dmise {
 namespace {
 
-constexpr double field_length_m = 1.5e6;  // of a pyramid's edges
+constexpr double field_length_m = 1.5e6;  // length of a pyramid's edges
 constexpr double longest_gap_s = 600.0;   // between states that one pass joins
-constexpr std::size_t max_fields = 200;   // of a sensor
+constexpr std::size_t max_fields = 200;   // limit for each sensor
 
 using Colour = std::array<int, 3>;
 

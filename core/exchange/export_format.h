@@ -23,13 +23,13 @@ struct ExportedFile {
 struct ExportRequest {
   const RunProducts& run;
   ProductKind kind = ProductKind::detections;
-  std::vector<MeanElements> elements;  // of the run's catalogues, where the format takes them
+  std::vector<MeanElements> elements;  // from the run's catalogues, where the format takes them
 };
 
 struct ExportFormat {
   const char* name;
   const char* what;                // a line of help
-  const char* file;                // of the output below RUN/export; without an ending: a directory
+  const char* file;                // path below RUN/export; without an ending: a directory
   std::vector<ProductKind> kinds;  // that it can hold, the default first
   bool takes_elements = false;
   bool all_kinds = false;  // unless one is asked for, all that the run has

@@ -20,12 +20,12 @@ namespace dmise {
 struct RunFrame {
   std::string sensor;
   std::uint32_t frame = 0;
-  SimTime start, middle, end;                            // of the exposure, as the sensor believes
+  SimTime start, middle, end;                            // exposure, as the sensor believes
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // at mid exposure
   double column_step_deg = 0.0, row_step_deg = 0.0;      // angle of a pixel at the reference
   double psf_fwhm_px = 0.0;
   double zero_point_mag = 0.0;
-  std::optional<Wcs> wcs;  // of the image, as detection saw it
+  std::optional<Wcs> wcs;  // as detection saw the image
 
   double exposure_s() const { return (end - start).seconds(); }
 };

@@ -15,7 +15,7 @@
 namespace dmise {
 namespace {
 
-constexpr int angle_decimals = 9;  // of a degree: 4 microarcsec
+constexpr int angle_decimals = 9;  // in degrees: 4 microarcsec
 
 /// One observation of a segment.
 struct Seen {

@@ -68,8 +68,8 @@ SensorState true_state(const RunProducts& run, const RunFrame& frame, const Trut
   if (run.sensor(t.sensor).light_time)
     line += t.true_velocity_m_per_s * (1.0 / speed_of_light_m_per_s);
   const Vec<Gcrs> position_m = t.true_position_m - unit(line) * t.true_range_m;
-  // Of a constant acceleration between the two times. Within a millisecond a sensor in orbit gains
-  // less than 0.01 m/s, and the difference of the positions says no more.
+  // The acceleration between the two times is taken as constant. Within a millisecond a sensor in
+  // orbit gains less than 0.01 m/s, and the difference of the positions says no more.
   constexpr double shortest_s = 1e-3;
   if (std::abs(late_s) < shortest_s) return {position_m, frame.sensor_velocity_m_per_s};
   return {position_m,

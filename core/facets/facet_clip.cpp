@@ -8,7 +8,7 @@ namespace {
 using Point = FacetPiece::Point;
 
 constexpr double min_share = 1e-12;
-constexpr double touching = 1e-12;  // of the facet's edges
+constexpr double touching = 1e-12;  // a point so near to an edge of the facet is on it
 
 /// Distance of `p` to the left of the line from `a` along the unit direction (ds, dt).
 struct Line {

@@ -42,7 +42,7 @@ struct FacetSet {
   };
   struct BumpNormal {
     Vec<Body> normal;
-    double share = 0.0;    // of the facet
+    double share = 0.0;    // part of the facet that has it
     double diffuse = 0.0;  // as above, of the picture there
   };
   std::vector<Bumps> bumps;

@@ -9,8 +9,8 @@ namespace dmise {
 namespace {
 
 constexpr double max_points = 5e7;   // over all facets
-constexpr double max_normals = 2e6;  // of height maps, over all facets
-constexpr int max_bins = 16;         // of a facet's slopes along each axis
+constexpr double max_normals = 2e6;  // for height maps, over all facets
+constexpr int max_bins = 16;         // for a facet's slopes along each axis
 
 /// Weights of red, green and blue in the material's reflectance in the band.
 std::array<float, 3> weights_of(const Material& material, const Band& band) {

@@ -122,7 +122,7 @@ double GlintField::sum_of_lobes(const Cells& cells, std::uint32_t width, const R
   const double longitude_rad = std::atan2(at.y, at.x);
   const double lowest_rad = from_pole_rad - cells.reach_rad;
   const double highest_rad = from_pole_rad + cells.reach_rad;
-  // Of longitude, on either side: all where the reach holds a pole.
+  // Longitudes on either side; all of them where the reach holds a pole.
   double side_rad = pi;
   if (lowest_rad > 0.0 && highest_rad < pi)
     side_rad = std::asin(std::min(1.0, std::sin(cells.reach_rad) / std::sin(from_pole_rad)));

@@ -14,8 +14,8 @@ namespace dmise {
 /// that they glint for as long as the bisector of Sun and viewer is, of all objects alike.
 struct GlintingEdges {
   Vec<Body> axis{1.0, 0.0, 0.0};  // unit
-  double half_width_rad = 0.0;    // of the glint at half its peak, from the plane across the axis
-  double share = 0.0;             // of the light
+  double half_width_rad = 0.0;    // glint at half its peak, from the plane across the axis
+  double share = 0.0;             // edges' part of the light
 
   bool operator==(const GlintingEdges&) const = default;
 };
@@ -34,8 +34,8 @@ struct Glints {
   // Half widths of the lobes at half their peak [rad]. There are lobes of both, and of octaves
   // between.
   double narrowest_rad = 0.0, widest_rad = 0.0;
-  double parts_in_view = 0.0;  // of each width: mean number whose lobe reaches a viewer
-  // Of the light, what parts of either width have; in between by a power of the width.
+  double parts_in_view = 0.0;  // mean number of each width whose lobe reaches a viewer
+  // Light that parts of either width have, in between by a power of the width.
   double share_of_narrowest = 0.0, share_of_widest = 0.0;
   std::optional<GlintingEdges> edges = {};
 
@@ -70,7 +70,7 @@ class GlintField {
   struct Cells {
     double reach_rad = 0.0;
     double reach_versine = 0.0;  // 1 - cos
-    double peak = 0.0;           // of a part, over the smooth light
+    double peak = 0.0;           // light of a part over the smooth light
     double parts_per_sr = 0.0;
     double height_rad = 0.0;
     std::vector<std::uint32_t> first;  // cell of each band, and the number of all

@@ -15,7 +15,7 @@ struct Frame {
   CountImage counts;
   FrameHeader header;
   PixelMask unusable{};                       // pixels without a value
-  FrameNotes notes{};                         // of another camera's frame (core/ingest)
+  FrameNotes notes{};                         // on another camera's frame (core/ingest)
   double count_zero = 0.0, count_step = 1.0;  // a count is (value in the file - zero) / step
 };
 

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr int max_axes = 99;  // of CFITSIO
+constexpr int max_axes = 99;  // CFITSIO has no more
 constexpr int max_compressed_axes = 6;
 constexpr LONGLONG longest_side = 1 << 16, max_planes = 1 << 20;
 // gzip compresses at best 1032 to 1: a file that claims more is malicious.

@@ -8,7 +8,7 @@ namespace {
 /// Sizes in bits that depend on the size of a pixel.
 struct Form {
   unsigned pixel_bits;
-  unsigned split_bits;     // of a block's code
+  unsigned split_bits;     // length of a block's code
   unsigned largest_split;  // code of uncompressed differences, less 1
 };
 constexpr Form byte_form{8, 3, 6}, short_form{16, 4, 14}, int_form{32, 5, 25};

@@ -24,7 +24,7 @@
 namespace dmise {
 namespace {
 
-constexpr double largest_value = 1e30;  // of a pixel; more is no light
+constexpr double largest_value = 1e30;  // more in a pixel is no light
 
 /// Whether the header is one of this program: a keyword that others do not have.
 bool is_own(std::string_view bytes) {

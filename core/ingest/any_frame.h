@@ -12,7 +12,7 @@ namespace dmise {
 
 /// What to read of a file.
 struct FrameChoice {
-  std::optional<int> plane;                   // of a third axis, from 1
+  std::optional<int> plane;                   // place on a third axis, from 1
   std::map<std::string, std::string> stated;  // values that replace those of keywords
 };
 

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr int kind_mesh_px = 32;      // of one kind, which has every second pixel
+constexpr int kind_mesh_px = 32;      // pixels of one kind, which is every second one
 constexpr double min_response = 0.2;  // fainter ones would be noise alone
 
 }  // namespace
@@ -53,7 +53,7 @@ std::array<float, 4> ColourMosaic::levels_around(int column, int row) const {
 }
 
 void ColourMosaic::measure_responses(const std::array<double, 4>& noise) {
-  constexpr double min_snr = 20.0;  // of the four pixels of an evened block together
+  constexpr double min_snr = 20.0;  // for the four pixels of an evened block together
   constexpr std::size_t min_sources = 10;
   constexpr int rounds = 12;
   double most = -HUGE_VAL;

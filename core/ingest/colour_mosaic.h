@@ -18,8 +18,8 @@ class ColourMosaic {
   /// `values`: rows x columns, NaN where there is none; two columns and rows at least.
   ColourMosaic(std::span<const double> values, int columns, Threads& threads);
 
-  /// The share of the sources' light that each kind records, over the mean of all: columns 0 and 1
-  /// of row 0, then of row 1. From the brightest pixels; empty if there are too few.
+  /// The share of the sources' light that each kind records, over the mean of all: row 0 before row
+  /// 1, column 0 before 1. Measured with the brightest pixels; empty if there are too few.
   const std::optional<std::array<double, 4>>& responses() const { return responses_; }
   /// The values as they were if all kinds had the mean sky and the mean response.
   std::vector<double> evened() const;
@@ -38,7 +38,7 @@ class ColourMosaic {
   int columns_, rows_;
   CountMap map_;
   std::array<CountImage, 4> kinds_;
-  std::array<std::vector<float>, 4> sky_;  // of each pixel of a kind, in values
+  std::array<std::vector<float>, 4> sky_;  // level at each pixel of a kind, in values
   std::array<double, 4> median_{};
   std::optional<std::array<double, 4>> responses_;
 };

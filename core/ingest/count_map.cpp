@@ -14,7 +14,7 @@ namespace dmise {
 namespace {
 
 constexpr double max_count = 65535.0;
-constexpr double sigma_of_quartiles = 0.7413;  // of a normal distribution, over their distance
+constexpr double sigma_of_quartiles = 0.7413;  // a normal distribution's, over their distance
 
 /// At most about `most` of the values that are finite, evenly spread.
 std::vector<double> sample(std::span<const double> values, std::size_t most) {
@@ -136,7 +136,7 @@ CountMap common_step(std::span<const double> values) {
     if (pixels[v] > 0) numbers.push_back(v);
   std::ranges::stable_sort(numbers, std::greater(), [&](std::size_t v) { return pixels[v]; });
   if (numbers.size() < min_numbers) return {};
-  // Of the most frequent ones: the values of few pixels may be anything.
+  // The most frequent numbers tell the step: values of few pixels may be anything.
   std::size_t step = 0, seen = 0;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i >= min_numbers && double(seen) > sky_share * double(finite)) break;

@@ -10,8 +10,8 @@
 namespace dmise {
 namespace {
 
-constexpr double max_gain = 20.0;    // of GAIN [e-/count]; more is a camera's setting
-constexpr double min_noise_e = 0.1;  // of a camera
+constexpr double max_gain = 20.0;    // a larger GAIN [e-/count] is a camera's setting
+constexpr double min_noise_e = 0.1;  // no camera has less
 constexpr int mesh_px = 64;
 
 /// Electrons per count by the noise of the sky: the slope of variance against level over a mesh.
@@ -61,7 +61,7 @@ std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Backgro
   return MeasuredGain{gain, gain * slope_sigma / slope};
 }
 
-/// Of the pixels of each kind alone, in electrons per count of the evened image.
+/// Measures with the pixels of each kind alone, in electrons per count of the evened image.
 std::optional<MeasuredGain> measure_gain_of(const ColourMosaic& mosaic, const CountMap& map,
                                             Threads& threads) {
   constexpr int cell_px = mesh_px / 2;
@@ -158,7 +158,7 @@ void set_read_noise(const StandardCards& cards, double noise_dn, int planes, Fra
   cards.assumed("read noise: that of the sky, which is more");
 }
 
-/// Of added planes a single one may be clipped: the sum is then at least its limit and the bias of
+/// A single one of added planes may be clipped: the sum is then at least its limit and the bias of
 /// the others.
 void set_saturation(const StandardCards& cards, const CountSource& source, double sky_dn,
                     FrameHeader& header) {

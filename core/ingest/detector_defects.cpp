@@ -35,7 +35,7 @@ std::optional<std::pair<int, int>> range_of(std::string_view text) {
   return std::pair{std::min(*from, *to) - 1, std::max(*from, *to) - 1};
 }
 
-/// Of "[x1:x2,y1:y2]".
+/// Parses "[x1:x2,y1:y2]".
 std::optional<Section> section_of(const std::string& card) {
   const std::string_view text = trimmed(card);
   const std::size_t comma = text.find(',');
@@ -233,7 +233,7 @@ void leave_out_hot_pixels(double sigma_px, Frame& frame, Threads& threads) {
   const Background sky(counts, defect_mesh_px, threads);
   const Psf psf(sigma_px);
   const Trail star{.flux_e = 1.0};
-  // Of light in the middle of a pixel, over the mean of the four beside it: more is no light.
+  // A pixel's light over the mean of the four beside it: no light of a star is sharper.
   const double max_ratio = sharper * trail_value(star, psf, 0, 0) / trail_value(star, psf, 1, 0);
   const double gain = frame.header.gain_e_per_dn;
   std::vector<std::size_t> hot;

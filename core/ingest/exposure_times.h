@@ -10,7 +10,7 @@ namespace dmise {
 struct ExposureTimes {
   std::optional<Utc> start;
   std::optional<double> exposure_s;  // > 0
-  // Of the last digit that tells the start; 0: it is known as well as its text says.
+  // Unit of the last digit that tells the start; 0: it is known as well as its text says.
   double width_s = 0.0;
 };
 

@@ -166,7 +166,7 @@ void set_sip(const StandardCards& cards, Wcs& wcs) {
 /// A polynomial in two variables, index p * side + q.
 class PolynomialOfTwo {
  public:
-  static constexpr int order = 7;  // of TPV
+  static constexpr int order = 7;  // TPV has no higher one
   static constexpr std::size_t side = std::size_t(order) + 1;
 
   static PolynomialOfTwo linear(double by_u, double by_v) {
@@ -334,7 +334,7 @@ std::optional<Wcs> wcs_of(const StandardCards& cards) {
     return read_wcs(cards);
   } catch (const Unknown& u) {
     cards.reject(u.key, u.reason);
-  } catch (const Error& e) {  // of a projection's coefficients
+  } catch (const Error& e) {  // a projection's coefficients are wrong
     cards.reject("CTYPE1", std::string("pointing: ") + e.what());
   }
   return std::nullopt;

@@ -125,7 +125,7 @@ bool is_of_mount_at_rest(const Elongation& e) {
 
 /// Whether most images are long in one direction, also blends of trails.
 bool are_aligned(const StarShape& shape) {
-  constexpr double min_agreement = 0.4;  // of directions
+  constexpr double min_agreement = 0.4;  // least length of the mean direction
   double plus = 0.0, cross = 0.0;
   for (const StarEllipse& e : shape.ellipses) {
     const double size = std::hypot(e.plus, e.cross);

@@ -15,7 +15,7 @@ struct ClockError {
       "offset, drift and a normal deviate an exposure"};
   double offset_s = 0.0;     // reading less true time, at the start of the run
   double drift = 0.0;        // growth of the offset [s/s]
-  double clock_rms_s = 0.0;  // of the jitter, drawn anew for each exposure
+  double clock_rms_s = 0.0;  // jitter, drawn anew for each exposure
   bool operator==(const ClockError&) const = default;
 
   static std::span<const InstrumentParameter> parameters();

@@ -30,7 +30,7 @@ struct InstrumentParameter {
     axes,         // a list [x, y, roll]
     rms,          // >= 0
     rms_of_axes,  // >= 0; in YAML also one number, for x and y
-    list,         // of any number of numbers >= 0
+    list,         // any number of numbers >= 0
   };
   std::string_view key;  // in YAML
   double unit = 1.0;     // factor from the key's unit to the member's

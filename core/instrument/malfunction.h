@@ -17,7 +17,7 @@ inline constexpr const char* malfunction_names[] = {"lost_link", "slow_download"
 struct Malfunction {
   MalfunctionKind kind = MalfunctionKind::lost_link;
   double at_s = 0.0, for_s = 0.0;  // after the start of the scenario, and how long
-  double download_s = 0.0;         // of a slow download: between an exposure's end and its image
+  double download_s = 0.0;         // `slow_download`: between an exposure's end and its image
   double gain_e_per_dn = 0.0;      // that is told
 };
 

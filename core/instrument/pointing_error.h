@@ -15,7 +15,7 @@ struct PointingError {
       "rotation of the camera, with a normal deviate an exposure"};
   ImageAxes bias_rad{};
   ImageAxes drift_rad_per_s{};   // from the start of the run on
-  ImageAxes pointing_rms_rad{};  // of the jitter, drawn anew for each exposure
+  ImageAxes pointing_rms_rad{};  // jitter, drawn anew for each exposure
   bool operator==(const PointingError&) const = default;
 
   static std::span<const InstrumentParameter> parameters();

@@ -20,7 +20,7 @@ struct Vibration {
       "Lucke, Sirlin & San Martin 1992, J. Astronautical Sciences 40, 557"};
   /// One-sided density of one axis, linear between frequencies in ascending order, 0 outside.
   std::vector<double> psd_frequency_hz, psd_rad2_per_hz;
-  std::vector<double> sine_frequency_hz, sine_rms_rad;  // of one axis
+  std::vector<double> sine_frequency_hz, sine_rms_rad;  // along one axis
   bool operator==(const Vibration&) const = default;
 
   static std::span<const InstrumentParameter> parameters();

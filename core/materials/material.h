@@ -16,7 +16,7 @@ struct Material {
   enum class Model { lambert, sandford_robertson, phong };
 
   std::string name = "grey";
-  std::string source;  // of the numbers
+  std::string source;  // where the numbers come from
   Model model = Model::lambert;
   Curve reflectance{{0.55e-6}, {0.2}};        // lambert: of all light, [0, 1]
   Curve emissivity;                           // sandford_robertson: eps
@@ -29,7 +29,7 @@ struct Material {
   double thermal_emissivity = 0.0;            // grey, of that emission, [0, 1]
   std::shared_ptr<const Texture> colour_map;  // phong: times `diffuse`, by red, green and blue
   std::shared_ptr<const Texture> slope_map;   // phong: of heights, times `height_m`
-  double height_m = 1.0;                      // of white above black
+  double height_m = 1.0;                      // white above black in `slope_map`
 
   bool operator==(const Material&) const = default;
 };

@@ -23,7 +23,7 @@ class BoxTree {
   static constexpr std::size_t leaf = 8;  // points
   struct Box {
     Vec<Body> low, high;
-    std::size_t begin, end;       // of its points
+    std::size_t begin, end;       // range of its points
     std::size_t right_child = 0;  // the left one follows; 0: a leaf
   };
 

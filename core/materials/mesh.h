@@ -17,8 +17,8 @@ struct Mesh {
   struct Triangle {
     std::array<std::uint32_t, 3> corner;
     std::uint32_t material = 0;           // index into `materials`
-    std::array<TexturePlace, 3> place{};  // of the corners, on the pictures of the material
-    bool panel = false;                   // of the part that turns (panel.h)
+    std::array<TexturePlace, 3> place{};  // where the corners are on the pictures of the material
+    bool panel = false;                   // it belongs to the part that turns (panel.h)
 
     void turn_over() {
       std::swap(corner[1], corner[2]);

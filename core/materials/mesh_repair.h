@@ -9,7 +9,7 @@ namespace dmise {
 /// Source line of each triangle, for messages: `file:line`.
 struct MeshLines {
   std::string file;
-  std::vector<std::uint32_t> line;  // of each triangle
+  std::vector<std::uint32_t> line;  // one for each triangle
 
   std::string of(std::size_t triangle) const { return file + ":" + std::to_string(line[triangle]); }
 };

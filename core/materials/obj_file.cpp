@@ -18,7 +18,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t max_corners = 1024;                 // of one face
+constexpr std::size_t max_corners = 1024;                 // limit for one face
 constexpr std::size_t max_texels = std::size_t(1) << 27;  // numbers in all pictures of a model
 
 class Reader {

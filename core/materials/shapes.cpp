@@ -29,7 +29,7 @@ Mesh as_panel(Mesh mesh) {
 }
 
 constexpr double chassis_thickness_m = 0.2;
-constexpr double array_edge_z_m = -chassis_thickness_m / 2 - 0.1;  // of the array, at the chassis
+constexpr double array_edge_z_m = -chassis_thickness_m / 2 - 0.1;  // hinge of the array
 
 /// Vertices of a geodesic sphere without duplicates.
 class Geodesic {

@@ -22,7 +22,7 @@ struct Texture {
   std::string file, where;              // name in the material file; file:line of it
   double scale_u = 1.0, scale_v = 1.0;  // repeats over a unit of u and v
   double offset_u = 0.0, offset_v = 0.0;
-  double base = 0.0, gain = 1.0;  // of its values: base + gain * value
+  double base = 0.0, gain = 1.0;  // a value becomes base + gain * value
   bool clamp = false;             // extend the edge outside; else repeat
   int columns = 0, rows = 0, channels = 0;
   std::vector<float> texels;  // rows x columns x channels, first row first

@@ -20,10 +20,10 @@ struct Optics {
   int columns = 0;
   int rows = 0;
   double transmission = 1.0;  // (0, 1]
-  double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
+  double psf_fwhm_px = 1.5;   // blur by lens and focus (Gaussian), before pixel integration; >= 0
   PointSpread spread;         // how points are blurred, and by which method
   Vignetting vignetting;
-  StrayLight stray_light;            // of what is beside the field
+  StrayLight stray_light;            // light from beside the field
   ThermalOptics thermal;             // heat of telescope and window
   ImageOptics image;                 // effects on the whole image
   bool equivalent_aperture = false;  // allows N < 0.5: aperture is only a collecting area

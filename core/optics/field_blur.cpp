@@ -210,7 +210,7 @@ std::array<double, 2> centroid_of_field_px(const Optics& optics, const FieldPlac
 FieldGridError field_grid_error(const Optics& optics, double wavelength_m, int n) {
   FieldGridError error;
   if (!optics.spread.varying.any()) return error;
-  constexpr int samples = 24;  // of half a side: lenses are symmetric, and grids
+  constexpr int samples = 24;  // over half a side: lenses are symmetric, and grids
   constexpr double margin = 1.1;
   const bool pupils = !optics.spread.varying.wavefront.empty();
   for (int j = 0; j <= samples; ++j)

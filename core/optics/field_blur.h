@@ -22,7 +22,7 @@ struct WavefrontTerm {
 /// A Zernike term of the wavefront over the field.
 struct FieldTerm {
   int noll = 4;         // 2..66: tilts displace the light from the chief ray
-  MonotoneCubic rms_m;  // of path, by the distance from the axis
+  MonotoneCubic rms_m;  // length of path, by the distance from the axis
 
   bool operator==(const FieldTerm&) const = default;
 };
@@ -50,8 +50,8 @@ struct FieldBlur {
   static double cost_s(int level, const PlanFacts& f);
 
   FieldRadius radius = FieldRadius::angle_deg;
-  MonotoneCubic fwhm_radial_px, fwhm_tangential_px;  // of Gaussians, before diffraction
-  std::vector<FieldTerm> wavefront;                  // of a pupil
+  MonotoneCubic fwhm_radial_px, fwhm_tangential_px;  // Gaussians before diffraction
+  std::vector<FieldTerm> wavefront;                  // aberrations of a pupil
 
   bool any() const { return !fwhm_radial_px.empty() || !wavefront.empty(); }
   bool operator==(const FieldBlur&) const = default;

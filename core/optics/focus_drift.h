@@ -7,7 +7,7 @@
 namespace dmise {
 
 /// The detector leaves the focus in which the run begins: with time, and with the temperature,
-/// which goes up and down once a day. Of a pupil it is a wavefront, of a Gaussian a disc (a ring
+/// which goes up and down once a day. It is a wavefront for a pupil, a disc for a Gaussian (a ring
 /// with an obscuration) of defocus / focal ratio.
 struct FocusDrift {
   static constexpr EffectFacts facts{"focus_drift", "the focus drifts with time and temperature",
@@ -21,7 +21,7 @@ struct FocusDrift {
   double start_um = 0.0;  // along the axis, at the start of the run
   double um_per_hour = 0.0;
   double um_per_k = 0.0;
-  double swing_k = 0.0;     // of the temperature between its daily extremes
+  double swing_k = 0.0;     // between the daily extremes of the temperature
   double warmest_h = 14.0;  // from the start of the run
   double run_s = 0.0;       // length of the run
 

@@ -37,7 +37,7 @@ std::span<const ImageParameter> LensGhost::parameters() {
 void LensGhost::apply(ExpectedElectronImage& image, Threads& threads) const {
   const ExpectedElectronImage source = image;
   const int columns = image.columns, rows = image.rows, reach = int(ghost_radius_px);
-  std::vector<int> half_width;  // of the disc, by row distance from its centre
+  std::vector<int> half_width;  // the disc's, by row distance from its centre
   std::size_t pixels = 0;
   for (int dy = 0; dy <= reach; ++dy) {
     half_width.push_back(int(std::sqrt(ghost_radius_px * ghost_radius_px - dy * dy)));

@@ -12,8 +12,8 @@ struct LensGhost {
   static constexpr EffectFacts facts{
       "lens_ghost", "reflections between lens surfaces add a faint mirrored copy of the image",
       "no ghosts: 1e-5 to 1e-3 of bright sources", "Smith 2008, Modern Optical Engineering"};
-  double ghost_fraction = 0.0;    // of the light, 0..0.1
-  double ghost_radius_px = 10.0;  // of the disc that a point becomes
+  double ghost_fraction = 0.0;    // share of the light, 0..0.1
+  double ghost_radius_px = 10.0;  // disc that a point becomes
   bool operator==(const LensGhost&) const = default;
 
   static std::span<const ImageParameter> parameters();

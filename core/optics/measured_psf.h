@@ -17,8 +17,8 @@ class MeasuredPsf {
  public:
   /// One image, rows x columns; its sum must be above 0.
   struct Plane {
-    std::optional<PixelPosition> at;     // of the frame; none: of all places
-    std::optional<double> wavelength_m;  // none: of all
+    std::optional<PixelPosition> at;     // place in the frame; none: all places
+    std::optional<double> wavelength_m;  // none: all
     std::vector<double> values;
   };
 

@@ -27,14 +27,14 @@ struct PointSpread {
       "Gaussian, Fourier optics of the pupil, or images from a file"};
 
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  /// Of the plane, once, unless it is the air that makes it necessary; sources have that of their
-  /// deposit.
+  /// The plane is transformed once, unless only the air makes it necessary, which is then charged;
+  /// deposits are charged to their sources.
   static double cost_s(int level, const PlanFacts& f);
 
   enum class Model {
     gaussian,     // round, of `psf_fwhm_px` and diffraction in quadrature
-    diffraction,  // of the pupil: wavefront, spiders, turbulence, jitter
-    file,         // of images of a point source, with what air is in them
+    diffraction,  // by the pupil: wavefront, spiders, turbulence, jitter
+    file,         // from images of a point source, with what air is in them
   };
   enum class Method {
     automatic,  // chosen by plan_psf
@@ -58,14 +58,14 @@ struct PointSpread {
   double defocus_m = 0.0;  // distance of the detector from the focus of infinity, away from it
   /// Range that is in focus, whose share of `defocus_m` is focal length^2 / range.
   double focus_distance_m = std::numeric_limits<double>::infinity();
-  double jitter_rad = 0.0;  // of the pointing, rms along one axis
+  double jitter_rad = 0.0;  // rms of the pointing along one axis
   std::vector<WavefrontTerm> wavefront;
   FieldAberrations field;
   int grid_columns = 1, grid_rows = 1;  // kernels over the field, 1..9, interpolated
   int max_screens = 32;                 // beyond so many tau0: long exposure
   FieldBlur varying;                    // over the field, by tables
-  FocusDrift drift;                     // of the detector along the axis
-  MeasuredPsfPointer measured;          // of `file`, else null
+  FocusDrift drift;                     // moves the detector along the axis
+  MeasuredPsfPointer measured;          // images for `file`, else null
 
   bool operator==(const PointSpread&) const = default;
 };

@@ -121,7 +121,7 @@ void PsfModel::set_defocus(double defocus_m) {
   centred_.clear();
 }
 
-// Of geometrical optics: light is even over the disc, or over the ring of an obscured pupil.
+// By geometrical optics light is even over the disc, or over the ring of an obscured pupil.
 double PsfModel::disc_otf(double nu) const {
   if (optics_.spread.defocus_m == 0.0) return 1.0;
   const double disc_rad =

@@ -20,10 +20,10 @@ struct PsfPlan {
   double wavelength_m = 0.0;  // for which it was made
   PointSpread::Method method = PointSpread::Method::deposit;
   ExposureKind exposure = ExposureKind::none;
-  int screens = 0;       // of `brief` and `between`
+  int screens = 0;       // for `brief` and `between`
   int oversampling = 1;  // cells a pixel
-  int half_cells = 0;    // of the kernel
-  double fwhm_px = 0.0;  // of diffraction, seeing, jitter and defocus in quadrature
+  int half_cells = 0;    // the kernel has as many on each side of its middle
+  double fwhm_px = 0.0;  // diffraction, seeing, jitter and defocus in quadrature
   double beyond = 0.0;   // fraction of light beyond the kernel's end, redistributed
   /// Defocus is the disc of geometrical optics, also of a pupil: its wavefront is too steep.
   bool geometric = false;
@@ -51,7 +51,7 @@ Optics blurred_by(const PsfPlan& plan, const Optics& optics);
 inline constexpr double widest_disc_px = 975.0;
 
 inline constexpr double largest_grid_cells = 40e6;
-/// Of a blur that changes over the field, which is transformed in any case.
+/// A blur that changes over the field is transformed in any case, with up to so many cells.
 inline constexpr double largest_field_cells = 160e6;
 inline constexpr int largest_oversampling = 16;
 /// Gaussian width of deposits on the grid in cells; the kernel is divided by it.

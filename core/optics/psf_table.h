@@ -19,9 +19,9 @@ inline constexpr double widest_sigma_px = 500.0;  // that is drawn
 struct PsfTable {
   double sigma_px = 0.0;
   int phases = 0;              // intervals
-  int first = 0;               // of the window, relative to floor(c); <= 0
+  int first = 0;               // where the window begins, relative to floor(c); <= 0
   int size = 0;                // pixels in the window
-  int stride = 0;              // of a row of `weights`, a multiple of 8; the rest is 0
+  int stride = 0;              // length of a row of `weights`, a multiple of 8; the rest is 0
   std::vector<float> weights;  // (phases + 1) x stride
   /// Sum and first moment, from the window's first pixel on, of each phase.
   std::vector<std::array<double, 2>> whole;

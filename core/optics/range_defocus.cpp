@@ -50,9 +50,9 @@ double DefocusScale::disc_px(double defocus_m) const {
 }
 
 // A disc of d adds d^2 / 16 to the variance of the blur; a share of no more than half of
-// d^2 / width^2 is misplaced by one much narrower, of the ratio of areas by one much wider. Rings
-// of diffraction are moved by the rms of the wavefront's change, 0.2267 rad for lambda / D of the
-// disc.
+// d^2 / width^2 is misplaced by one much narrower, of the ratio of areas by one much wider. The
+// rings of diffraction are moved by the rms of the wavefront's change, 0.2267 rad per lambda / D
+// in the disc.
 double DefocusScale::measure(double disc_px) const {
   const double widths = disc_px / width_px_;
   const double of_disc = ring_ * std::log1p(widths * widths);

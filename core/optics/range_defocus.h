@@ -56,8 +56,8 @@ class DefocusScale {
  private:
   double measure(double disc_px) const;
 
-  double px_per_m_;  // of defocus
-  double width_px_;  // of the blur without defocus
+  double px_per_m_;  // diameter of the disc over defocus
+  double width_px_;  // blur without defocus
   double ring_;      // steps of a ring are narrower than of a disc
   double airy_px_;   // 0: its rings are blurred away
 };

@@ -46,7 +46,7 @@ struct TableAttitude {
 /// As a node of the scenario says, tick by tick.
 struct NodeAttitude {
   std::string node;
-  std::size_t place = 0;  // of the object among those of the node
+  std::size_t place = 0;  // index among the objects of the node
 };
 
 /// To add a model: list it here, give it an overload in attitude.cpp, test it in tests/orbit.

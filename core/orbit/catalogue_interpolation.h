@@ -18,7 +18,7 @@ struct CatalogueInterpolationOptions {
 /// Error of interpolation between ticks for each object of a catalogue, relative to SGP4.
 struct CatalogueInterpolationError {
   std::vector<double> max_m;       // greatest distance found; 0 where there is a code
-  std::vector<std::uint8_t> code;  // of the first time at which SGP4 had no state, else 0
+  std::vector<std::uint8_t> code;  // why SGP4 had no state at the first such time, else 0
 };
 
 /// Measures the error from `start` on, in TEME, with slopes from symmetric differences of the

@@ -34,7 +34,7 @@ struct StraightMotion {
 /// Moves as a node of the scenario says, tick by tick. Nothing is known beforehand.
 struct NodeMotion {
   std::string node;
-  std::size_t place = 0;  // of the object among those of the node
+  std::size_t place = 0;  // index among the objects of the node
 };
 
 /// Motion of one object of a scenario. Element sets are propagated in batches by
@@ -78,7 +78,7 @@ MotionState<Gcrs> in_gcrs(const FramedState& state, const EarthOrientation& eart
 /// Why a motion model has no state at a time; disjoint from the SGP4 codes.
 enum class MotionCode : std::uint8_t {
   ok = 0,
-  outside_span = 16,  // of a trajectory from a file
+  outside_span = 16,  // its trajectory from a file does not cover the time
   underground = 17,   // the path enters the Earth
   untold = 18,        // its node gives none
 };

@@ -271,10 +271,10 @@ class OemReader {
   }
 
   std::vector<OemLine> lines_;
-  int number_ = 0;  // of the line at hand
+  int number_ = 0;  // number of the line at hand
   Trajectory trajectory_;
   std::optional<OemSegment> segment_;
-  std::optional<std::string> name_, id_;  // of the first segment
+  std::optional<std::string> name_, id_;  // as the first segment has them
   Declared declared_;
   bool is_oem_ = false;
 };

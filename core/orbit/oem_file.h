@@ -10,7 +10,7 @@ namespace dmise {
 struct OemSubject {
   std::string object_name;
   std::string object_id;      // international designator, or another name
-  std::string creation_date;  // of a simulation: its start, so that the bytes repeat
+  std::string creation_date;  // a simulation states its start, so that the bytes repeat
 };
 
 /// A line of an ephemeris: time, position [km] to 1e-9, velocity [km/s] to 1e-12.
@@ -45,7 +45,7 @@ class OemFile {
   std::string path_;
   OemSubject subject_;
   std::FILE* file_ = nullptr;  // none before the first state
-  std::string last_utc_;       // of the open segment; empty: none is open
+  std::string last_utc_;       // last state of the open segment; empty: none is open
   long stop_at_ = 0;           // where its STOP_TIME stands
 };
 

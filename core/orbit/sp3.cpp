@@ -107,7 +107,7 @@ class Sp3Reader {
         return take_position();
       case 'V':
         return take_velocity();
-      case 'E':  // of EP and EV
+      case 'E':  // EP and EV
       case '+':
       case '/':
         return;

@@ -154,7 +154,7 @@ Quaternion TorqueFreeRotation::momentum_from_now(double time_s) const {
   std::array<double, 3> a{};
   a[axis_[0]] = std::copysign(1.0, amplitude_[0]);
   const Vec<Body> axis{a[0], a[1], a[2]};
-  const Vec<Body> across = cross(momentum, axis);  // of the shortest rotation to the axis
+  const Vec<Body> across = cross(momentum, axis);  // the shortest rotation to the axis is about it
   const double length = std::sqrt(2 * (1 + dot(momentum, axis)));
   return about(axis, turn_rad(argument_at(time_s))) *
          Quaternion{length / 2, across.x / length, across.y / length, across.z / length};

@@ -48,8 +48,8 @@ class TorqueFreeRotation {
   // Axes a, b, c in the order of their moments. The momentum goes round a in body axes: that of
   // the greatest moment if L^2 > 2 T Ib, else that of the least.
   std::array<std::size_t, 3> axis_{0, 1, 2};
-  std::array<double, 3> moment_{};     // of a, b, c, the greatest 1
-  std::array<double, 3> amplitude_{};  // of rates about a (dn), b (sn) and c (cn) [rad/s]
+  std::array<double, 3> moment_{};     // about a, b, c, the greatest 1
+  std::array<double, 3> amplitude_{};  // rates about a (dn), b (sn) and c (cn) [rad/s]
   double momentum_ = 0.0, twice_energy_ = 0.0;
   double m1_ = 1.0;       // 1 - m, the complementary parameter
   double quarter_ = 0.0;  // K; infinite on the separatrix

@@ -13,7 +13,7 @@ struct Band {
   std::string name = "V";
   double centre_m = 0.55e-6;
   double width_m = 0.128e-6;  // full width
-  Curve response;             // of transmission, quantum efficiency, [0, 1]; empty: the top hat
+  Curve response;             // transmission, quantum efficiency, [0, 1]; empty: the top hat
 
   double low_m() const {
     return response.empty() ? centre_m - width_m / 2 : response.wavelength_m.front();
@@ -25,8 +25,8 @@ struct Band {
 };
 
 /// Filters by name: "bessell-U" B V R I and "sdss-u" g r i z. Sources: Bessell 1990, PASP 102,
-/// 1181; Doi et al. 2010, AJ 139, 1628 (with telescope, camera and 1.3 airmasses; scaled to a peak
-/// of 1).
+/// 1181; Doi et al. 2010, AJ 139, 1628 (with telescope, camera and 1.3 airmasses; scaled so that
+/// the peak is 1).
 std::optional<Band> filter_named(std::string_view name);
 /// Returns the names that `filter_named` knows.
 std::vector<std::string> filter_names();

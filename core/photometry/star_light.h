@@ -28,8 +28,8 @@ class StarLight {
   double at_v_0(const StarColour& colour) const;
 
   std::vector<double> at_v_0_;            // by B-V, `step` apart, from min_bv
-  std::vector<double> red_dwarf_at_v_0_;  // of red dwarfs, from `min_dwarf_bv`
-  std::vector<double> m_at_v_0_;          // of types M, by kind from `m0_giant`
+  std::vector<double> red_dwarf_at_v_0_;  // red dwarfs from `min_dwarf_bv` on
+  std::vector<double> m_at_v_0_;          // types M by kind from `m0_giant` on
 };
 
 }  // namespace dmise

@@ -14,8 +14,8 @@ namespace {
 
 #include "core/photometry/star_spectrum_table.inc"
 
-constexpr double first_bv = -0.3, first_dwarf_bv = 0.95, step_bv = 0.05;  // of the tables
-constexpr double m_kelvin = 3500.0;  // of the black body that their factors are for
+constexpr double first_bv = -0.3, first_dwarf_bv = 0.95, step_bv = 0.05;  // B-V in the tables
+constexpr double m_kelvin = 3500.0;  // black body that the factors of type M are for
 using Factors = double[std::size(nodes_nm)];
 
 double clamped(double bv) { return std::isnan(bv) ? min_bv : std::clamp(bv, min_bv, greatest_bv); }

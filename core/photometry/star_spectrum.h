@@ -45,8 +45,8 @@ struct StarColour {
 /// factors, linear between eight wavelengths from 360 to 2159 nm, that give it the mean colours of
 /// real stars in UBVRIJHK: of dwarfs to B-V = 0.95, of giants from 1.16. Source: Pecaut & Mamajek
 /// 2013, ApJS 208, 9; Landolt 1992, AJ 104, 340; Yale Bright Star Catalogue. Lines and the Balmer
-/// jump are smoothed out. Red dwarfs have the colours of Pecaut & Mamajek, giants of type M those
-/// of Bessell & Brett 1988, PASP 100, 1134, and of the Yale catalogue. Reddened stars and white
+/// jump are smoothed out. Red dwarfs have colours from Pecaut & Mamajek, giants of type M from
+/// Bessell & Brett 1988, PASP 100, 1134, and the Yale catalogue. Reddened stars and white
 /// dwarfs differ.
 struct StarSpectrum {
   double kelvin = 0.0;

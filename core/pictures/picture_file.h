@@ -31,7 +31,7 @@ struct ExrChannel {
 /// An EXR image of one or more channels of 32-bit floats.
 struct ExrImage {
   int columns = 0, rows = 0;
-  std::vector<ExrChannel> channels;  // of different names; viewers show Y as grey
+  std::vector<ExrChannel> channels;  // with different names; viewers show Y as grey
   std::vector<ExrAttribute> attributes;
   // "YYYY:MM:DD hh:mm:ss", the Exif format; blanks if unknown.
   std::string taken_utc = "    :  :     :  :  ";

@@ -101,7 +101,7 @@ class PngCodec final : public PictureCodec {
     LinearPicture picture{int(png.image.width), int(png.image.height), channels, {}};
     picture.pixels.resize(pixels * std::size_t(channels));
     // With alpha, which is taken out again: without it libpng would mix with a background.
-    if (png.image.format & PNG_FORMAT_FLAG_LINEAR)  // of 16 bits
+    if (png.image.format & PNG_FORMAT_FLAG_LINEAR)  // 16 bits
       read<png_uint_16>(png, grey ? PNG_FORMAT_LINEAR_Y_ALPHA : PNG_FORMAT_LINEAR_RGB_ALPHA,
                         65535.0f, picture);
     else

@@ -8,7 +8,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t kinds = std::size(error_kinds);
-using Shares = std::array<double, kinds>;  // of the budget
+using Shares = std::array<double, kinds>;  // parts of the budget
 
 constexpr int steps = 60;
 /// Allows for the rounding of a sum of shares that is one.
@@ -96,7 +96,7 @@ void repair(Selection& s, const std::vector<std::vector<Option>>& choices) {
     std::size_t which = 0, option = 0;
     for (std::size_t i = 0; i < choices.size(); ++i)
       for (std::size_t j = 0; j < choices[i].size(); ++j) {
-        double relief = 0.0;  // of what is over the budget
+        double relief = 0.0;  // how much less is over the budget
         for (std::size_t k = 0; k < kinds; ++k) {
           const double now = s.share()[k];
           const double then = now - s.at(i).share[k] + choices[i][j].share[k];

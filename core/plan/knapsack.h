@@ -16,7 +16,7 @@ struct KnapsackOption {
 using KnapsackChoice = std::vector<KnapsackOption>;
 
 struct KnapsackResult {
-  std::vector<std::size_t> option;  // of each choice
+  std::vector<std::size_t> option;  // index for each choice
   double cost_s = 0.0;
   double min_cost_s = 0.0;  // lower bound of the optimum
 };

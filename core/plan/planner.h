@@ -12,7 +12,7 @@ namespace dmise {
 struct PlannedEffect {
   const EffectFacts* facts = nullptr;
   int level = 0;
-  ErrorBound error;      // of this level
+  ErrorBound error;      // at this level
   double cost_s = 0.0;   // by the shipped table
   ErrorBound cheaper;    // error of the next lower level; zero at the lowest
   bool forced = false;   // by the user

@@ -36,20 +36,20 @@ struct Detection {
   std::uint32_t index = 0;  // in the frame, from 0, by falling SNR
   DetectionKind kind = DetectionKind::point;
   ExposureEpoch epoch = ExposureEpoch::middle;
-  SimTime time;  // of ra/dec
+  SimTime time;  // when the object is at ra/dec
   // Astrometric, from the WCS, of the object at mid exposure: the centroid of a point, or the
   // position on a streak's line (core/detection/known/mid_exposure.h).
   double ra_rad = 0.0, dec_rad = 0.0;
   // Corrected for annual aberration and the mean of parallactic refraction.
   double corrected_ra_rad = 0.0, corrected_dec_rad = 0.0;
-  // Of corrected_*: var(ra cos dec), cov, var(dec). Includes what one frame cannot determine: along
+  // var(ra cos dec), cov, var(dec) of corrected_*, with what one frame cannot determine: along
   // a streak, the object's position at mid exposure (core/detection/known/mid_exposure.h); along
   // the vertical of a ground sensor, refraction_parallax_sigma_rad.
   std::array<double, 3> covariance_rad2{};
   Vec<Gcrs> sensor_position_m;  // at `time`
   Vec<Gcrs> sensor_velocity_m_per_s;
   bool light_time_removed = false;
-  bool aberration_removed = false;  // of corrected_*
+  bool aberration_removed = false;  // from corrected_*
   // True if corrected_* contains no residual refraction: in space, or if the frame was made
   // without. On the ground the WCS removes the refraction of stars; the rest decreases with the
   // object's range, which is unknown.
@@ -60,7 +60,7 @@ struct Detection {
   // Mean and standard deviation of that angle over altitudes from 300 km to GEO, uniform in their
   // logarithm; corrected_* are raised by the mean.
   double refraction_parallax_rad = 0.0, refraction_parallax_sigma_rad = 0.0;
-  // Of a sensor that measures them: distance from the sensor to where the light or the echo left
+  // Only some sensors measure these: distance from the sensor to where the light or the echo left
   // the object, along corrected_*, and its derivative by the time of reception, with the motion of
   // the sensor. Each has a sigma.
   std::optional<double> range_m, range_sigma_m;
@@ -92,7 +92,7 @@ struct Detection {
   bool at_edge = false;    // touches the frame's edge, or pixels without a value: an end is missing
   bool star_like = false;  // has the shape and direction of a star's trail
   bool excluded = false;   // Sun, Moon or limb was nearer to the axis than the camera allows
-  // Of a streak, where it was asked for and the streak is long enough (core/detection/curve).
+  // A streak has one where it was asked for and is long enough (core/detection/curve).
   std::optional<LightCurve> light_curve;
 
   bool operator==(const Detection&) const = default;

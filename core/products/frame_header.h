@@ -35,7 +35,7 @@ struct SitePlace {
 struct FrameHeader {
   std::string sensor;          // at most 64 printable ASCII characters, as all texts here
   std::uint32_t frame = 0;     // counts from 1
-  SimTime start, middle, end;  // of the exposure
+  SimTime start, middle, end;  // times of the exposure
   std::string start_utc, middle_utc, end_utc;  // ISO 8601; FITS drops the Z at the end
   double exposure_s = 0.0;
   std::string mount;     // "fixed", "sidereal", ...
@@ -44,7 +44,7 @@ struct FrameHeader {
   std::uint64_t seed = 0;
 
   std::string accuracy;  // what the frame was planned for; empty: all effects as asked for
-  ErrorBound error;      // of the plan
+  ErrorBound error;      // bound that the plan states
 
   double gain_e_per_dn = 1.0;
   double bias_dn = 0.0;
@@ -55,13 +55,13 @@ struct FrameHeader {
   std::optional<Detector> detector;  // effects that are on; empty in foreign files
   double saturation_dn = 0.0;        // lowest count that may be clipped: full well or ADC
   double psf_fwhm_px = 0.0;          // Gaussian, before pixel integration
-  std::optional<double> defocus_um;  // of a focus that drifts, mid exposure
+  std::optional<double> defocus_um;  // where the focus drifts, at mid exposure
   MonotoneCubic illumination;        // relative, of a lens with a table of it
   FieldRadius illumination_radius = FieldRadius::angle_deg;
   Band band;
-  double zero_point_mag = 0.0;              // of a source of 1 e-/s, without atmosphere
+  double zero_point_mag = 0.0;              // a source of 1 e-/s has it, without atmosphere
   MagnitudeScale magnitudes;                // that products have; PHOTZP is in it
-  double extinction_mag_per_airmass = 0.0;  // of the atmosphere in this band; 0 in space
+  double extinction_mag_per_airmass = 0.0;  // by the atmosphere in this band; 0 in space
   // Turbulence towards the zenith at 500 nm; all 0 if none is given.
   double r0_m = 0.0, isoplanatic_angle_rad = 0.0, tau0_s = 0.0;
 
@@ -73,17 +73,17 @@ struct FrameHeader {
   std::array<Quaternion, 3> camera_from_gcrs;
   bool mirrored = false;  // rows run against the camera's y axis
 
-  Exclusion exclusion;  // of the camera
+  Exclusion exclusion;  // limits set by the camera
   Excluded excluded;    // in this exposure
   bool dark = false;    // the camera's cover or shutter was closed
 
   UnknownFacts unknown;  // none in a run's frames
 
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
-  // Of the geocentre, barycentric, GCRS axes: displaces the stars by which the WCS is. Zero if
-  // annual aberration is off.
+  // Velocity of the geocentre, barycentric, GCRS axes: displaces the stars by which the WCS is.
+  // It is 0 if annual aberration is off.
   Vec<Gcrs> earth_velocity_m_per_s;
-  std::optional<SitePlace> site;  // of a ground sensor
+  std::optional<SitePlace> site;  // none in space
   // Air that refracts in a ground sensor's frame, pressure 0 if refraction is off. Empty in space
   // and in files without it.
   std::optional<Weather> air;

@@ -16,16 +16,16 @@ namespace dmise {
 struct FrameReport {
   std::string sensor;
   std::uint32_t frame = 0;                                 // counts from 1
-  SimTime start, middle, end;                              // of the exposure
+  SimTime start, middle, end;                              // times of the exposure
   double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;  // ICRS, at mid exposure
   Wcs wcs;
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // at mid exposure
-  double limiting_magnitude = 0.0;  // of a point source at SNR = detection threshold; 0: unknown
+  double limiting_magnitude = 0.0;  // point source at SNR = detection threshold; 0: unknown
   double background_e = 0.0;        // median [e-/px]
   double noise_e = 0.0;             // median of the per-pixel noise [e-]
   double zero_point_mag = 0.0;      // magnitude of a source of 1 e-/s
-  MagnitudeScale magnitudes;        // of this report and its detections
-  // Of the Gaussian with the PSF's sum of squares in the frame's middle, before pixel integration.
+  MagnitudeScale magnitudes;        // this report and its detections are in it
+  // The Gaussian has the PSF's sum of squares in the frame's middle, before pixel integration.
   double psf_fwhm_px = 0.0;
   std::uint32_t psf_stars = 0;  // from which the PSF was measured; 0: it is the header's
   // Stars of a catalogue that stand well out of the noise where the header points, and how many of
@@ -41,7 +41,7 @@ struct FrameReport {
   bool detection_off = false;
   Excluded excluded;            // bodies nearer to the axis than the camera allows
   bool shutter_closed = false;  // because of them: the frame is dark, and detection was off
-  FrameNotes notes;             // of another camera's frame; not sent
+  FrameNotes notes;             // on another camera's frame; not sent
 
   bool operator==(const FrameReport&) const = default;
 };

@@ -25,12 +25,12 @@ struct LightPeriod {
 /// without pixels that can be used are left out.
 struct LightCurve {
   double bin_px = 0.0;           // length of a bin
-  std::vector<double> along_px;  // of the middle of a bin from end 1
+  std::vector<double> along_px;  // middle of each bin from end 1
   // Time after the start of the exposure, with the delay of the row of a rolling shutter, of a
   // motion from end 1 to end 2 (`direction_known`).
   std::vector<double> time_s;
   std::vector<double> light_e, sigma_e;  // electrons of a bin and their error
-  // Of the errors of a bin and of the next one: the PSF blurs the light of one over both.
+  // Between the errors of a bin and of the next one: the PSF blurs the light of one over both.
   std::vector<double> correlation;
   std::optional<LightPeriod> period;  // where one is significant
 

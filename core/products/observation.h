@@ -11,8 +11,8 @@ struct Observation {
   std::string telescope;                  // the camera's name; empty: none
   std::optional<double> start_mjd;        // UTC, start of the exposure
   std::optional<double> ra_rad, dec_rad;  // ICRS of the stars in the frame's centre, mid exposure
-  std::optional<double> airmass;          // of the frame's centre; on the ground, above the horizon
-  std::optional<double> sun_altitude_rad;   // of its centre over the site, without refraction
+  std::optional<double> airmass;          // in the frame's centre; on the ground, above the horizon
+  std::optional<double> sun_altitude_rad;   // its centre over the site, without refraction
   std::optional<double> moon_altitude_rad;  // as that of the Sun
 
   bool operator==(const Observation&) const = default;

@@ -10,7 +10,7 @@ namespace dmise {
 
 /// What a sensor of the user's saw in one direction.
 struct OwnSighting {
-  SimTime time;  // of reception, within the exposure
+  SimTime time;  // reception, within the exposure
   // ICRS, from the sensor to where the light or the echo left the object: without aberration and
   // refraction.
   double ra_rad = 0.0, dec_rad = 0.0;

@@ -6,8 +6,8 @@
 
 // A product - detection, truth, report of a frame, track, task, world coordinate system - names
 // each of its fields once, in `visit_fields(v, product)` beneath its struct. Visitors read and
-// write it: JSON (product_json.cpp) and messages (nodes/wire/product_message.h). The order is that
-// of a JSON line. A row is one of
+// write it: JSON (product_json.cpp) and messages (nodes/wire/product_message.h). A JSON line has
+// this order. A row is one of
 //
 //   v(name, member)               `name`: of the field in the message, and the key in JSON
 //   v(name, member, key, unit)    a number or list, in `unit` under `key` in JSON

@@ -17,8 +17,8 @@ struct Task {
   std::uint32_t id = 0;  // in the run, from 1
   std::string sensor;
   std::uint32_t track = 0;             // id of the target
-  std::uint32_t catalogue_number = 0;  // of the target; 0: in no catalogue
-  std::string name;                    // of the target; may be empty
+  std::uint32_t catalogue_number = 0;  // the target's; 0: in no catalogue
+  std::string name;                    // the target's; may be empty
   SimTime given, start, on_target, end;
   std::uint32_t first_frame = 0, exposures = 0;  // that fit between `on_target` and `end`
   // The predicted path, at `path_start` and every `path_step_s` after, at least 2 points: all
@@ -28,10 +28,10 @@ struct Task {
   std::vector<double> path_m, path_m_per_s;
   // Lower triangle by rows of the predicted position and velocity at `on_target`, as of a track.
   std::array<double, 21> covariance{};
-  double sigma_rad = 0.0;  // of the predicted direction at `on_target`, the larger axis
+  double sigma_rad = 0.0;               // predicted direction at `on_target`, the larger axis
   double slew_rad = 0.0, slew_s = 0.0;  // angle and time with settling, from `start`
   double in_field = 0.0;                // probability that the target is in the field, [0, 1]
-  double detection_probability = 0.0;   // of one exposure, the one above in it, [0, 1]
+  double detection_probability = 0.0;   // in one exposure, with the one above in it, [0, 1]
   double gain_nats = 0.0;               // expected information of all exposures
   double gain_nats_per_s = 0.0;         // over the time from `start` to `end`: what was compared
   std::uint32_t candidates = 0;         // tracks that the sensor could have observed

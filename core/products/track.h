@@ -22,19 +22,19 @@ constexpr std::span<const char* const> names_of(TrackStatus) { return track_stat
 struct Track {
   std::uint32_t id = 0;  // in the run, from 1 in the order in which tracks begin
   TrackStatus status = TrackStatus::tentative;
-  SimTime time;  // of the state: that of the tick
+  SimTime time;  // when the state holds: at the tick
   Vec<Gcrs> position_m, velocity_m_per_s;
   // Lower triangle by rows of position and velocity [m^2, m^2/s, m^2/s^2], as in an OEM.
   std::array<double, 21> covariance{};
   // Cd A / m and Cr A / m with their standard deviations; 0 of a scale that is not estimated.
   double drag_m2_per_kg = 0.0, drag_sigma_m2_per_kg = 0.0;
   double srp_m2_per_kg = 0.0, srp_sigma_m2_per_kg = 0.0;
-  std::uint32_t catalogue_number = 0;   // of what it is correlated with; 0: in no catalogue
-  std::string name;                     // of that object; may be empty
+  std::uint32_t catalogue_number = 0;   // object that it is correlated with; 0: in no catalogue
+  std::string name;                     // name of that object; may be empty
   double existence = 0.0;               // probability that the object exists, [0, 1]
   std::uint32_t detections = 0;         // taken since it began
   std::vector<std::string> associated;  // ids of the detections that it took at this tick
-  // Of the latest detection, which the start of a track has not.
+  // How far the latest detection was off; a track that starts has none.
   double innovation_d2 = 0.0;  // residual' S^-1 residual, 2 degrees of freedom
   SimTime last_seen;           // time of the latest detection
   double magnitude = 0.0;      // mean of its detections, each as if 1000 km away

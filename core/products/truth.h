@@ -19,7 +19,7 @@ struct Truth {
   std::uint32_t frame = 0;
   std::uint32_t catalogue_number = 0;
   std::string name;
-  SimTime start, middle, end;                        // of the exposure, as it was
+  SimTime start, middle, end;                        // true times of the exposure
   Vec<Gcrs> true_position_m, true_velocity_m_per_s;  // geocentric, at mid exposure
   double true_range_m = 0.0;                         // at mid exposure, geometric
   double true_ra_rad = 0.0, true_dec_rad = 0.0;  // astrometric (geometric minus light time), mid
@@ -41,8 +41,8 @@ struct Truth {
   /// Diameter of the disc on which its range puts a point's light, as it was drawn; 0: it is as
   /// sharp as stars.
   double defocus_disc_px = 0.0;
-  /// Of the camera's axes from GCRS at mid exposure, where a sensor does not know them; none: they
-  /// are as in the frame's header.
+  /// Attitude of the camera at mid exposure, where a sensor does not know it; none: it is as in the
+  /// frame's header.
   std::optional<Quaternion> camera_from_gcrs;
 
   bool operator==(const Truth&) const = default;

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double min_z = 1e-9;  // of a direction that a gnomonic lens images
+constexpr double min_z = 1e-9;  // a gnomonic lens images directions with more
 
 }  // namespace
 

@@ -13,9 +13,9 @@ namespace dmise {
 /// What all sensors share at one tick.
 EnvironmentState environment_at(const Clock& clock, Tick tick, SimTime time);
 
-/// What programs of the user's are told of Sun, Moon and Earth, at one tick after the other: that
-/// of the last whole minute, run on. It depends on the instant alone, and costs little: the series
-/// of ERFA take longer than a simple model of an orbit. Within 0.002 arcsec of `environment_at`.
+/// What programs of the user's are told of Sun, Moon and Earth, at one tick after the other: the
+/// state at the last whole minute, run on. It depends on the instant alone and costs little: ERFA's
+/// series take longer than a simple model of an orbit. Within 0.002 arcsec of `environment_at`.
 class EnvironmentByMinutes {
  public:
   explicit EnvironmentByMinutes(Clock clock) : clock_(std::move(clock)) {}

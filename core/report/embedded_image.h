@@ -10,7 +10,7 @@ namespace dmise {
 /// noise. The value of pixel i is min_dn + step_dn * number i.
 struct EmbeddedImage {
   int bin = 1;
-  int columns = 0, rows = 0;  // of the means; the last ones are of what is left
+  int columns = 0, rows = 0;  // counted in means; the last ones hold what is left
   double min_dn = 0.0, step_dn = 1.0;
   // Row-major uint16, each as its difference (modulo 2^16) from the left one, in the first column
   // from the one above; low bytes then high bytes: `compact`.

@@ -25,7 +25,7 @@ DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings
   }
   // As many of each sensor, evenly over its time.
   std::size_t sensors = 0;
-  double megapixels = 0.0;  // of a frame of each
+  double megapixels = 0.0;  // one frame of each sensor
   for (std::size_t s = 0; s < able.size(); ++s) {
     if (able[s].empty()) continue;
     const auto& camera = run.sensors[s].sensor;

@@ -100,7 +100,7 @@ std::string view_of(const RunContents& run, const ReportFrame& row, const StarMa
     json.end_object();
     const SkyPlace place(run.sensors[row.sensor].sensor, row.sensor_position_m);
     json.key("outline").begin_array();
-    constexpr int pieces = 8;  // of a side
+    constexpr int pieces = 8;  // along each side
     const double right = columns - 1, bottom = rows - 1;
     for (int k = 0; k < 4 * pieces; ++k) {
       const double u = double(k % pieces) / pieces;

@@ -198,7 +198,7 @@ std::string of_fusion(const std::string& directory, const RunFile& file) {
 }
 
 void read_tracks(RunContents& run) {
-  constexpr std::size_t max_points = 400;  // of a track
+  constexpr std::size_t max_points = 400;  // drawn for a track
   std::map<std::uint32_t, ReportTrack> tracks;
   if (const std::string path = of_fusion(run.directory, run_file::tracks); !path.empty())
     for_lines(path, quietly, [&](const JsonRecord& line) {

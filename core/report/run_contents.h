@@ -17,7 +17,7 @@ namespace dmise {
 /// What an effect cost a sensor, summed over its frames.
 struct EffectCost {
   std::map<std::string, std::size_t> levels;  // frames at each; empty without a plan
-  std::string why;                            // of its first decided level
+  std::string why;                            // why it had its first decided level
   std::size_t planned_frames = 0;             // that predict a cost
   double predicted_s = 0.0, measured_s = 0.0;
 };
@@ -34,7 +34,7 @@ struct ReportSensor {
 struct ReportFrame {
   std::size_t sensor = 0;
   std::uint32_t number = 0;
-  SimTime middle;  // of the exposure
+  SimTime middle;  // mid exposure
   std::string middle_utc;
   double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;
   Vec<Gcrs> sensor_position_m;
@@ -74,10 +74,10 @@ struct ReportTick {
 /// The products of a run, complete or not.
 struct RunContents {
   std::string directory;
-  RunRecord record;  // of a run that was killed as it began it: with its digest alone
-  std::vector<ReportSensor> sensors;  // of the record, and others that have left frames
+  RunRecord record;                   // its digest alone if the run was killed as it began
+  std::vector<ReportSensor> sensors;  // in the record, or known by frames that they left
   std::vector<ReportFrame> frames;    // by sensor and number
-  std::vector<ReportTruth> truths;    // of objects that may have light in a frame
+  std::vector<ReportTruth> truths;    // only objects that may have light in a frame
   std::vector<ReportDetection> detections;
   bool has_truth = false;
   Score score;

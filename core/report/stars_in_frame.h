@@ -9,7 +9,7 @@
 namespace dmise {
 
 struct StarInFrame {
-  std::uint32_t id = 0;  // of the catalogue
+  std::uint32_t id = 0;  // in the catalogue
   PixelPosition pixel;
   double ra_rad = 0.0, dec_rad = 0.0;  // ICRS, of the date
   double v_mag = 0.0;

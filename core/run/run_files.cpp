@@ -9,7 +9,7 @@ namespace dmise {
 
 bool is_file_of_sensor(std::string_view name) {
   constexpr std::string_view partial = ".partial", frame = "frame-", digits = "0123456789";
-  constexpr std::string_view journal = "tasks.journal";  // of a sensor that is cued
+  constexpr std::string_view journal = "tasks.journal";  // a sensor that is cued writes it
   if (name.ends_with(partial)) name.remove_suffix(partial.size());
   if (name == journal || std::ranges::any_of(run_file::of_sensor, [&](const RunFile& file) {
         return name == file.name;

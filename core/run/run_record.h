@@ -15,12 +15,12 @@ namespace dmise {
 /// A sensor of a run.
 struct RunSensor {
   std::string name;
-  std::optional<Site> site;  // of a sensor on the ground, over the scenario's ellipsoid
-  std::string platform;      // of one in orbit: the object that carries it
+  std::optional<Site> site;  // if on the ground, over the scenario's ellipsoid
+  std::string platform;      // if in orbit: the object that carries it
   std::string camera;        // its name; "node NAME" of a program of the user's
   double exposure_s = 0.0, cadence_s = 0.0;
   int columns = 0, rows = 0;  // 0 of a sensor without a camera
-  double psf_sigma_px = 0.0;  // of the Gaussian nearest to the camera's PSF; 0 without a camera
+  double psf_sigma_px = 0.0;  // Gaussian nearest to the camera's PSF; 0 without a camera
   bool light_time = true;     // whether objects are seen where they were when the light left
   std::optional<JsonRecord> camera_keys;
 };
@@ -29,7 +29,7 @@ struct RunSensor {
 struct RunCatalogue {
   std::string named;              // as in the scenario
   std::vector<std::string> only;  // numbers or names; empty: all
-  std::string sha256;             // of its text; empty in runs of early versions
+  std::string sha256;             // hash of its text; empty in runs of early versions
 };
 
 /// An object of the scenario itself.
@@ -44,8 +44,8 @@ struct RunNode {
   double compute_s = 0.0, messaging_s = 0.0, waiting_s = 0.0, start_s = 0.0;
 };
 
-/// What run.json says. Of a run that has not ended, or was killed, it has no more than status,
-/// digest and parts.
+/// What run.json says. If the run has not ended, or was killed, it has no more than status, digest
+/// and parts.
 struct RunRecord {
   std::string path;
   std::string status, how, reason, software, digest;

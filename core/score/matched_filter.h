@@ -8,7 +8,7 @@ struct IdealSource {
   double signal_e = 0.0;
   double length_px = 0.0;
   double noise_e = 0.0;   // per pixel, without the source's own
-  double sigma_px = 0.0;  // of the Gaussian, before pixel integration
+  double sigma_px = 0.0;  // Gaussian PSF, before pixel integration
 };
 
 /// SNR of the matched filter, limited by the background: signal_e / noise_e times the root of the

@@ -12,7 +12,7 @@ namespace dmise {
 
 struct ScoreSettings {
   double gate_px = 5.0;        // see association.h
-  double threshold_snr = 6.0;  // of the detector: theory is Q(threshold - SNR)
+  double threshold_snr = 6.0;  // the detector's: theory is Q(threshold - SNR)
 };
 
 /// What became of a truth; each has one.
@@ -34,7 +34,7 @@ struct MatchErrors {
   std::optional<double> along_arcsec, across_arcsec;  // corrected direction at mid exposure
   std::optional<double> nees_px, nees_sky;            // squared errors over their covariance, / 2
   std::optional<double> over_bound;                   // across_px / its Cramer-Rao bound
-  std::optional<double> magnitude, magnitude_over_sigma;  // of a detection in V
+  std::optional<double> magnitude, magnitude_over_sigma;  // if the detection is in V
   std::optional<double> flux, flux_over_sigma;            // -2.5 log10(signal / true) [mag]
   // Ends of streaks, of trails that are whole: beyond the true one, across, and in time.
   std::optional<double> start_along_px, start_across_px, start_time_s;
@@ -73,7 +73,7 @@ struct ScoredTruth {
   TrueSource truth;
   Fate fate = Fate::unscored;
   std::optional<double> snr;  // expected, see matched_filter.h
-  double length_px = 0.0;     // of the trail in the frame
+  double length_px = 0.0;     // part of the trail in the frame
   std::optional<double> rate_arcsec_per_s;
   std::optional<Detection> detection;
   std::size_t pieces = 0;  // detections of it
@@ -109,10 +109,10 @@ struct SensorScore {
   std::size_t truths = 0, detections = 0;
   std::size_t in_pieces = 0, further_pieces = 0;  // truths found in pieces; detections beyond one
   std::size_t false_alarms = 0, unscored_detections = 0;
-  Bin detection;  // of truths expected above the threshold, or unknown
+  Bin detection;  // truths expected above the threshold, or unknown
   std::vector<Bin> by_snr, by_magnitude, by_length_px, by_rate;  // last two: above the threshold
   std::optional<double> points_threshold, streaks_threshold;     // fitted within 4 of the setting
-  // Of clean detections, then of all; of points, then of streaks.
+  // Clean detections, then all; points, then streaks.
   std::array<std::array<std::array<ErrorFigure, error_keys.size()>, 2>, 2> errors{};
 };
 

@@ -23,7 +23,7 @@ class SensorTally {
   ScoreSettings settings_;
   SensorScore score_;
   std::vector<Bin> above_ = std::vector<Bin>(1);
-  std::vector<DetectionTrial> trials_[2];  // of points, of streaks
+  std::vector<DetectionTrial> trials_[2];  // points, streaks
 };
 
 }  // namespace dmise

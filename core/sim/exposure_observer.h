@@ -16,10 +16,10 @@ namespace dmise {
 struct ObserverExposure {
   std::uint32_t frame = 0;  // from 1
   SimTime start, middle, end;
-  Vec<Gcrs> position_m, velocity_m_per_s;  // of the sensor
+  Vec<Gcrs> position_m, velocity_m_per_s;  // the sensor's
   EnvironmentState environment;
-  const ObjectRoster* roster = nullptr;  // of the objects; null: it is not told the truth
-  ObjectStates objects = {};             // of the roster's
+  const ObjectRoster* roster = nullptr;  // all objects; null: it is not told the truth
+  ObjectStates objects = {};             // in the roster's order
 };
 
 /// Products of an exposure as they were made before.

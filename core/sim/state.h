@@ -24,7 +24,7 @@ struct ObjectInfo {
   std::string designator;        // international designator, may be empty
   DiffuseSphere sphere;          // its brightness, unless it has a shape
   double element_age_s = 0.0;    // start of the run minus the epoch of the elements
-  Rare<SunTrackingPanel> panel;  // of an object with an attitude
+  Rare<SunTrackingPanel> panel;  // none without an attitude
 
   bool operator==(const ObjectInfo &) const = default;
 };
@@ -32,7 +32,7 @@ struct ObjectInfo {
 /// All objects of a run; the position in this list is the object's index everywhere else.
 struct ObjectRoster {
   std::vector<ObjectInfo> objects;
-  std::vector<MeanElements> elements;  // of the first objects, those that SGP4 moves
+  std::vector<MeanElements> elements;  // for the first objects, those that SGP4 moves
 
   bool operator==(const ObjectRoster &) const = default;
 };
@@ -85,7 +85,7 @@ struct SiteState {
   Tick tick = 0;
   SimTime time;
   std::string sensor;
-  double extinction_mag_per_airmass = 0.0;  // of light at 550 nm
+  double extinction_mag_per_airmass = 0.0;  // at 550 nm
   double pressure_hpa = 0.0, temperature_c = 0.0, humidity = 0.0;
   double cloud_transmission = 1.0;  // at the zenith now, [0, 1]
   // Turbulence towards the zenith at 500 nm; all 0 without a profile.
@@ -104,7 +104,7 @@ struct EnvironmentState {
   EarthOrientation earth;
   Vec<Gcrs> sun_m;                    // geocentric, geometric, of date in GCRS
   Vec<Gcrs> moon_m;                   // geocentric
-  Vec<Gcrs> earth_barycentric_m;      // of the Earth's centre, ICRS axes
+  Vec<Gcrs> earth_barycentric_m;      // the Earth's centre, ICRS axes
   Vec<Gcrs> earth_velocity_m_per_s;   // barycentric, for annual aberration
   double tt_jd1 = 0.0, tt_jd2 = 0.0;  // two-part TT Julian date of `time` [days]
   Vec<Gcrs> moon_velocity_m_per_s;    // geocentric: the derivative of `moon_m`

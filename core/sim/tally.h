@@ -13,10 +13,10 @@ namespace dmise {
 /// do not count: a process that replaces another publishes them again.
 struct TopicTally {
   std::string topic;
-  std::uint64_t messages = 0;       // of this tick, including the watermark
-  std::uint64_t last_sequence = 0;  // of the publisher on this topic
-  std::uint64_t digest = 0;         // of kinds, payloads and arrays; not of envelopes
-  std::uint64_t incarnation = 0;    // of the reporting process
+  std::uint64_t messages = 0;       // at this tick, including the watermark
+  std::uint64_t last_sequence = 0;  // number of the publisher's last one on this topic
+  std::uint64_t digest = 0;         // over kinds, payloads and arrays; not over envelopes
+  std::uint64_t incarnation = 0;    // identifies the reporting process
 
   /// Whether the content is the same, whatever process published it: sequences count within an
   /// incarnation.
@@ -29,7 +29,7 @@ struct TopicTally {
 struct TickTally {
   Tick tick = 0;
   std::vector<TopicTally> topics;  // in the order of the node's list
-  std::uint64_t digest = 0;        // of a host: the sum of its nodes' content_digest
+  std::uint64_t digest = 0;        // a host's is the sum of its nodes' content_digest
 };
 
 /// Returns the contribution of a node's tick to the digest of a run, which is the sum over all

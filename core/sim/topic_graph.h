@@ -15,7 +15,7 @@ struct NodeTopics {
   std::vector<std::string> consumes;
   Tick look_back = 0;  // ticks before the one it resumes at whose inputs it needs
   Schedule schedule;
-  std::map<std::string, Tick> delays = {};  // of consumed topics that it hears late, >= 1
+  std::map<std::string, Tick> delays = {};  // consumed topics that it hears late, >= 1
 
   Tick delay(const std::string& topic) const {
     const auto found = delays.find(topic);

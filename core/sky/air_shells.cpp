@@ -17,7 +17,7 @@ AirShells::AirShells(double ground_m) {
                       std::exp(-over_ground_m / haze_scale_height_m) / haze_scale_height_m,
                       ozone_density(ground_m + over_ground_m)};
   };
-  double column_m = 0.0;  // of molecules, at the density at the sea
+  double column_m = 0.0;  // height of all molecules, at the density at the sea
   for (int i = 0; i <= shells; ++i) {
     const auto height_m = [](double level) { return top_m * level * level / (shells * shells); };
     radius_m_.push_back(AirColumns::earth_radius_m + ground_m + height_m(i));

@@ -46,7 +46,7 @@ class AirShells {
 struct LineThroughShells {
   struct Piece {
     double length_m, middle_m;  // along the line, from the observer
-    double radius_m;            // of its middle
+    double radius_m;            // at its middle
     AirAmounts before;          // between the observer and its middle
   };
   /// `sin_altitude` >= 0.

@@ -226,7 +226,7 @@ struct DaySky::Sums {
     const ColumnDepths depths(air, piece.wavelength_m);
     const DiffuseLight diffuse(layered(shells, depths, air, sun_at_levels, sin_sun_altitude));
     for (std::size_t a = 0; a < altitude_nodes; ++a) {
-      std::vector<double> reaches, depth;  // of light of each piece
+      std::vector<double> reaches, depth;  // light of each piece that arrives; its depth
       for (std::size_t i = 0; i < lines[a].pieces.size(); ++i) {
         const auto& p = lines[a].pieces[i];
         depth.push_back(p.length_m * depths.of(shells.in_shell(i)));

@@ -11,7 +11,7 @@ namespace dmise {
 
 /// What the day sky over a site depends on, beside the Sun.
 struct DayAir {
-  double height_m = 0.0;  // of the site over the sea
+  double height_m = 0.0;  // site over the sea
   double pressure_hpa = 1013.25;
   Haze haze;
   double ground_albedo = 0.2;     // Lambertian, at all wavelengths

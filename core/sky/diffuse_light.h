@@ -8,11 +8,11 @@ namespace dmise {
 /// Air in plane layers between levels, from the ground up, at one wavelength. Depths are those of
 /// extinction.
 struct LayeredAir {
-  std::vector<double> layer_depth;  // of each layer: one less than there are levels
+  std::vector<double> layer_depth;  // one for each layer: one less than there are levels
   // At each level: shares of the extinction that molecules and haze (without its forward peak)
   // scatter, and share of sunlight that arrives there.
   std::vector<double> molecules, haze, sunlight;
-  double sun_cosine = 1.0;  // of its zenith angle; below 0 where it is down
+  double sun_cosine = 1.0;  // by its zenith angle; below 0 where it is down
   double ground_albedo = 0.0;
 };
 

@@ -31,7 +31,7 @@ struct LightPollution {
   static ErrorBound error(int, const PlanFacts& f);
   static double cost_s(int level, const PlanFacts& f);
 
-  double zenith_v_mag_per_arcsec2 = 18.0;  // of the even part alone
+  double zenith_v_mag_per_arcsec2 = 18.0;  // the even part alone
   LampMix lamps;
   std::vector<CityGlow> cities;
 };

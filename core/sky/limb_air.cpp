@@ -17,7 +17,7 @@ namespace dmise {
 namespace {
 
 constexpr double limb_earth_radius_m = AirColumns::earth_radius_m;
-constexpr float darkest_air_log = -200.0f;  // of logarithms
+constexpr float darkest_air_log = -200.0f;  // stands for no light
 
 // Nodes of the table of scattered light.
 constexpr std::size_t tangent_nodes = 71;  // every 1 km to 40, 2.3 km above
@@ -98,7 +98,7 @@ struct Sight {
       if (cosine >= 0.0) {
         column = columns.upwards(place.level, cosine);
       } else {
-        // Of a piece in which the shadow of the ground begins, the part that is lit.
+        // A piece in which the shadow of the ground begins is lit in part.
         const double passes_m = r * std::sqrt(1.0 - cosine * cosine);
         const double changes_m =
             std::abs(place.along_m - to_sun_m * ahead) / std::max(passes_m, 1.0) * piece_m;
@@ -189,8 +189,7 @@ double LimbAirRadiance::photons_per_s_m2_sr(const LimbLine& line,
                                             const Vec<Gcrs>& direction) const {
   const double height_m = line.tangent_height_m();
   if (line.meets_ground() || !(height_m < LimbAirTable::top_m)) return 0.0;
-  // Of the air along the whole line, what is ahead: it falls off as a Gaussian from the lowest
-  // place.
+  // Only the air ahead counts: air along the line falls off as a Gaussian from the lowest place.
   constexpr double scale_height_m = 7e3;
   const double ahead =
       0.5 * std::erfc(line.from_m / std::sqrt(2.0 * line.nearest_m * scale_height_m));

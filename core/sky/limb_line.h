@@ -10,7 +10,7 @@ namespace dmise {
 /// radius: heights in it are the true ones to 0.34 %.
 struct LimbLine {
   double radius_m = 0.0;
-  double nearest_m = 0.0;   // of the whole line to the centre
+  double nearest_m = 0.0;   // least distance of the whole line from the centre
   double from_m = 0.0;      // where the observer is along it, from that place; < 0: it lies ahead
   double true_scale = 1.0;  // true length over length
   Vec<Gcrs> line;           // unit

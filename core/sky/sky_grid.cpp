@@ -14,7 +14,7 @@ constexpr double cell_px = 32.0;
 /// One axis cut into equal cells from the first pixel to the last.
 struct Axis {
   int cells;
-  double width;            // of a cell [px]
+  double width;            // width of a cell [px]
   std::vector<int> first;  // cells + 1: each cell's first pixel; a pixel belongs to one cell
 
   explicit Axis(int pixels) {
@@ -65,7 +65,7 @@ class Bicubic {
   std::array<std::array<double, 4>, 4> columns_;  // polynomials of v
 };
 
-constexpr int parts = 4;  // of a cell that its nodes do not describe
+constexpr int parts = 4;  // along each side of a cell that its nodes do not describe
 
 /// The nodes of the coarse grid.
 struct Grid {

@@ -13,7 +13,7 @@
 namespace dmise {
 namespace {
 
-/// Of light from all around, half of what is scattered out of the line of sight is replaced by what
+/// In light from all around, half of what is scattered out of the line of sight is replaced by what
 /// is scattered into it. Noll et al. 2012, A&A 543, A92 find 0.3 to 0.7 for zodiacal light.
 constexpr double diffuse_share_of_extinction = 0.5;
 // Airglow, given as it is seen in the zenith, falls by the whole for each airmass beyond the first:

@@ -22,7 +22,7 @@ double mag_per_arcsec2_of_s10(double s10) {
 
 double s10_of_nanolambert(double nanolambert) {
   static const double per_nl =
-      s10_of_mag_per_arcsec2((20.7233 + std::log(34.08)) / 0.92104);  // of 1 nL
+      s10_of_mag_per_arcsec2((20.7233 + std::log(34.08)) / 0.92104);  // light of 1 nL
   // 0.92104 is 0.4 ln 10 rounded, so light goes as the nanolamberts.
   return per_nl * nanolambert;
 }

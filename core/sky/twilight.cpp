@@ -20,7 +20,7 @@ double patat_v_mag_per_arcsec2(double depression_deg) {
   return 11.84 + 1.518 * x - 0.057 * x * x;
 }
 
-/// Of twilight alone, at 5 to 14 deg.
+/// Twilight without the dark sky, at 5 to 14 deg.
 double twilight_mag_per_arcsec2(double depression_deg) {
   return mag_per_arcsec2_of_s10(s10_of_mag_per_arcsec2(patat_v_mag_per_arcsec2(depression_deg)) -
                                 s10_of_mag_per_arcsec2(dark_v_mag_per_arcsec2));

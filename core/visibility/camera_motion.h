@@ -6,7 +6,7 @@ namespace dmise {
 /// Linear and angular speed of a camera over some time, in the axes in which objects are bounded.
 struct CameraMotion {
   double speed_m_per_s = 0.0;   // in TEME
-  double turn_rad_per_s = 0.0;  // of its own axes, in TEME
+  double turn_rad_per_s = 0.0;  // its own axes turn in TEME
 };
 
 /// Bound from the camera at two instants some seconds apart, plus a quarter. Zero for a camera

@@ -23,7 +23,7 @@ class FieldOfView {
   Optics optics_;
   bool flat_ = false;                         // gnomonic: the edges are planes through the camera
   std::array<Vec<CameraFrame>, 4> outwards_;  // unit normals of those planes
-  double cone_cos_ = 0.0, cone_sin_ = 0.0;    // of the half angle of the cone
+  double cone_cos_ = 0.0, cone_sin_ = 0.0;    // half angle of the cone
   bool everything_ = false;                   // the cone is the whole sphere
 };
 

@@ -7,7 +7,7 @@
 namespace dmise {
 namespace {
 
-constexpr double nearest_m = 1e-3;  // of a place that a camera looks at
+constexpr double nearest_m = 1e-3;  // a camera looks at no nearer place
 constexpr double min_sine = 1e-6;   // between boresight and up
 
 Rotation<CameraFrame, Gcrs> at_direction(const Vec<Gcrs>& direction, double roll_rad) {

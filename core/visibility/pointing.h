@@ -45,7 +45,7 @@ struct PointingScene {
   Vec<Gcrs> towards_target;  // from the observer, any length; of PointTarget and PointCued
   Rotation<Itrs, Gcrs> itrs_from_gcrs;
   const Site* site = nullptr;                          // null aboard a platform
-  std::optional<Rotation<Gcrs, Body>> gcrs_from_body;  // of the platform; for PointBody only
+  std::optional<Rotation<Gcrs, Body>> gcrs_from_body;  // the platform's; for PointBody only
 };
 
 /// Attitude of a camera that points at its goal at the instant of `scene`. Throws `Error` for one

@@ -283,10 +283,10 @@ class Search {
   std::vector<double> hidden_before_, hidden_after_;
   std::vector<double> reach_;  // bounds on the objects' speeds in the axes of the bounds [m/s]
   std::vector<OrbitBound> bound_before_;
-  std::vector<CameraMoment> cameras_;  // of the part, from step `first_instant_`
+  std::vector<CameraMoment> cameras_;  // over the part, from step `first_instant_`
   std::vector<Sunlight> lights_;       // at those instants
   std::size_t first_instant_ = 0;
-  std::vector<CameraMotion> motions_;  // of the part, between its instants
+  std::vector<CameraMotion> motions_;  // between the instants of the part
   CameraMotion motion_;                // maximum of the stride
   std::vector<std::uint32_t> candidates_;
   std::vector<Found> found_;

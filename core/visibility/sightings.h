@@ -23,7 +23,7 @@ struct Sighting {
 struct LostObject {
   std::uint32_t object = 0;
   Sgp4Code code = Sgp4Code::ok;
-  SimTime time;  // of the first such instant
+  SimTime time;  // first such instant
 };
 
 struct Sightings {

@@ -17,7 +17,7 @@ namespace dmise {
 /// moves a pixel to where its star would be imaged without air. In FITS files it is a lookup table.
 struct WcsRefraction {
   Vec<CameraFrame> zenith;         // unit
-  double focal_length_px = 0.0;    // of the lens
+  double focal_length_px = 0.0;    // the lens's
   std::optional<Projection> lens;  // if it differs from the projection of the WCS
   double pressure_hpa = 0.0, temperature_c = 0.0, humidity = 0.0;  // at the camera
   double wavelength_um = 0.55;
@@ -34,7 +34,7 @@ struct Wcs {
   double crpix_x = 0.0, crpix_y = 0.0;  // reference pixel, (0, 0) at the first pixel's centre
   double ra_rad = 0.0, dec_rad = 0.0;   // ICRS direction of the reference pixel
   std::array<double, 4> cd_deg{};       // CD1_1 CD1_2 CD2_1 CD2_2 [deg/px]
-  int order = 0;                        // of the SIP polynomials, 0: none, at most 9
+  int order = 0;                        // degree of the SIP polynomials, 0: none, at most 9
   // A_pq, B_pq (pixel -> intermediate) and AP_pq, BP_pq (back), index p * (order + 1) + q.
   std::vector<double> a, b, ap, bp;
   std::optional<WcsRefraction> refraction;

@@ -17,15 +17,15 @@ namespace {
 constexpr int fit_points = 24, check_points = 37, table_points = 33;
 // Allowances for errors between the sampled points.
 constexpr double between_points = 1.3, between_cells = 1.25;
-constexpr double good_px = 0.08;  // of a WCS as a whole
+constexpr double good_px = 0.08;  // error of a WCS as a whole
 constexpr double good_low_order_px = 0.01;
-constexpr int highest_order = 9;  // of SIP, by its convention
+constexpr int highest_order = 9;  // limit of SIP by its convention
 constexpr double good_table_px = 0.06;
 constexpr double min_cell_px = 3.0;
 // Nothing is fitted near the antipode of the axis, where a projection diverges.
 constexpr double farthest_fitted_cos = -0.9;
 constexpr double low_rad = 20 * deg;  // above it polynomials represent refraction
-constexpr int max_nodes = 400;        // of a lookup table's longer side
+constexpr int max_nodes = 400;        // along a lookup table's longer side
 
 struct Sample {
   PixelPosition pixel;

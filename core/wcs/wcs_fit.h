@@ -23,7 +23,7 @@ struct CameraAir {
 struct WcsForm {
   Projection projection;                    // one that FITS has
   int order = 0;                            // 0..9 of the polynomials; below 2 there are none
-  std::optional<WcsRefraction> refraction;  // of a camera of the same projection; offset ignored
+  std::optional<WcsRefraction> refraction;  // in a camera of the same projection; offset ignored
   bool reference_is_refracted = true;       // omits the shift of the reference pixel
 };
 
@@ -33,8 +33,8 @@ struct WcsForm {
 /// including its lookup table. Throws `Error` if fewer pixels than unknowns see sky.
 Wcs fit_wcs(const Optics& optics, const SkyOfPixel& sky, const WcsForm& form);
 
-/// Fits the simplest WCS accurate to 0.08 px over the whole frame: TAN + SIP up to half diagonals
-/// of 45 deg; the camera's own projection, if FITS has it, + SIP; otherwise, and if a horizon is in
+/// Fits the simplest WCS accurate to 0.08 px over the whole frame: TAN + SIP to a half diagonal of
+/// 45 deg; the camera's own projection, if FITS has it, + SIP; otherwise, and if a horizon is in
 /// the frame, that with separate refraction, whose lookup table is made for 0.06 px. `air` if `sky`
 /// includes refraction.
 Wcs best_wcs(const Optics& optics, const SkyOfPixel& sky, const std::optional<CameraAir>& air);

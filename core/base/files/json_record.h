@@ -54,7 +54,7 @@ class JsonRecord {
 
  private:
   JsonRecord(std::shared_ptr<const nlohmann::json> object, std::string place);
-  /// Of a value in this one.
+  /// Makes a record of `value`, which is in this one; its messages name `key` as well.
   JsonRecord part(const nlohmann::json& value, const std::string& key) const;
   const nlohmann::json& at(const char* key) const;
   std::vector<double> numbers_of(const char* key, std::size_t count) const;

@@ -14,8 +14,8 @@ struct JacobiFunctions {
 
 /// Jacobi's elliptic functions of `u`, |u| <= K, for the complementary parameter `m1` = 1 - m in
 /// [0, 1]; m1 = 0 gives tanh and sech. By the arithmetic-geometric mean and ascending
-/// transformations (Bulirsch 1965, Numerische Mathematik 7, 78): accurate at m1 below the rounding
-/// of m.
+/// transformations (Bulirsch 1965, Numerische Mathematik 7, 78): accurate even where m1 is too
+/// small for m = 1 - m1 to differ from 1.
 JacobiFunctions jacobi_functions(double u, double m1);
 
 }  // namespace dmise

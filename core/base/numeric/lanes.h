@@ -26,8 +26,8 @@
 
 namespace dmise::DMISE_SIMD {
 
-inline constexpr int lanes = DMISE_SIMD_BYTES / 4;       // of 32 bits
-inline constexpr int wide_lanes = DMISE_SIMD_BYTES / 8;  // of 64 bits
+inline constexpr int lanes = DMISE_SIMD_BYTES / 4;       // 32-bit numbers in a vector
+inline constexpr int wide_lanes = DMISE_SIMD_BYTES / 8;  // 64-bit numbers in a vector
 
 using F32 = float __attribute__((vector_size(DMISE_SIMD_BYTES)));
 using I32 = std::int32_t __attribute__((vector_size(DMISE_SIMD_BYTES)));

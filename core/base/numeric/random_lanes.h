@@ -81,7 +81,7 @@ DMISE_INLINE void words_at(const RngKey& key, const std::uint32_t* pixels, std::
 
 /// Natural logarithm of q in (0, 1], absolute error below 1e-7 (1 + |ln q|).
 DMISE_INLINE F32 log_of(F32 q) {
-  const I32 shifted = bits<I32>(q) - 0x3f3504f3;  // of sqrt(1/2): mantissas in [sqrt 1/2, sqrt 2)
+  const I32 shifted = bits<I32>(q) - 0x3f3504f3;  // sqrt(1/2), so mantissas in [sqrt 1/2, sqrt 2)
   const I32 exponent = shifted >> 23;
   const F32 f = bits<F32>((shifted & 0x7fffff) + 0x3f3504f3) - 1.0f;
   F32 p = polynomial(f, -0.083054870f, 0.127989404f, -0.129434034f, 0.141902319f, -0.166434891f,

@@ -22,7 +22,7 @@ std::uint64_t mix(std::uint64_t h) {
   return h ^ (h >> 31);
 }
 
-// Of (length, text), so that ("ab", "c") and ("a", "bc") differ.
+// The length is hashed, too, so that ("ab", "c") and ("a", "bc") differ.
 std::uint64_t hash_text(std::uint64_t h, std::string_view text) {
   const auto length = static_cast<std::uint64_t>(text.size());
   for (int byte = 0; byte < 8; ++byte) {

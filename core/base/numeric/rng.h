@@ -14,7 +14,7 @@ namespace dmise {
 
 /// Key of a stream of random numbers, one per (seed, sensor, frame, effect).
 struct RngKey {
-  std::array<std::uint32_t, 2> key{};     // of Philox: hash of seed, sensor and effect
+  std::array<std::uint32_t, 2> key{};     // Philox's: hash of seed, sensor and effect
   std::array<std::uint32_t, 2> stream{};  // counter words 2 and 3: frame, more of the hash
 
   bool operator==(const RngKey&) const = default;

@@ -211,7 +211,7 @@ const Section& seeing_section() {
 }
 
 SensorSeeing read_seeing(const YamlValue& value, double airmass) {
-  constexpr double wavelength_m = 500 * nm;  // of `SensorSeeing::r0_m`
+  constexpr double wavelength_m = 500 * nm;  // `SensorSeeing::r0_m` is stated at it
   YamlMap map(value, seeing_section());
   SensorSeeing seeing;
   if (map.find("profile")) {

@@ -26,7 +26,7 @@ struct AtmosphereConfig {
   Curve extinction_mag_per_airmass;  // over wavelength
   std::optional<bool> refraction;    // switches the effect, if set
   std::optional<TurbulenceConfig> turbulence;
-  // Of the day sky alone.
+  // Only the day sky depends on these.
   std::optional<double> aerosol_optical_depth;  // at 550 nm; none: as the extinction has it
   std::optional<double> angstrom_exponent, ground_albedo;
 };

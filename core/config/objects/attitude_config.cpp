@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 constexpr double max_rpm = 6000.0;
-constexpr double noted_deg = 0.1;  // of an attitude between ticks
+constexpr double noted_deg = 0.1;  // least error between ticks that is warned of
 
 const Section& inertial_section() {
   static const Section section{

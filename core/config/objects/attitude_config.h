@@ -12,7 +12,7 @@ class YamlValue;
 struct AttitudeConfig {
   Attitude model;
   std::string table_path;       // resolved; empty for other models
-  std::string node_where = {};  // of `node`, for messages; empty for other models
+  std::string node_where = {};  // place of the key `node`, for messages; empty for other models
   std::string where = {};       // `file:line:column: objects[0].attitude`, for messages
 };
 

@@ -68,8 +68,8 @@ KeplerElements read_elements(YamlMap& map) {
   return k;
 }
 
-/// Warnings of orbits that a model can compute with but no object in the scene has, mostly errors
-/// of a unit: of the mapping `two_body`, whose orbit has these apsides from the Earth's centre
+/// Warnings of orbits that a model can compute with but no object in the scene has, mostly wrong
+/// units, in the mapping `two_body`, whose orbit has these apsides from the Earth's centre
 /// (apoapsis infinite for open orbits). Each line is `file:line:column: key: reason, got value`;
 /// empty: all values are usual.
 std::vector<std::string> unusual_orbit_values(const YamlValue& two_body, double periapsis_m,

@@ -9,9 +9,9 @@ namespace dmise {
 
 /// The Earth of a scenario: `simulation: {ellipsoid, origin, earth_albedo}`.
 struct EarthConfig {
-  Ellipsoid ellipsoid;                 // of sites, heights, shadow, occultation and limb
-  std::optional<Site> origin;          // of the scenario's east, north and up; on the ellipsoid
-  double albedo = usual_earth_albedo;  // of its disc and of earthshine
+  Ellipsoid ellipsoid;                 // sites, heights, shadow, occultation and limb refer to it
+  std::optional<Site> origin;          // where east, north and up are 0; on the ellipsoid
+  double albedo = usual_earth_albedo;  // its disc and earthshine have it
 };
 
 /// These keys, for the section of `simulation`.

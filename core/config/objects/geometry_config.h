@@ -15,9 +15,9 @@ struct GeometryConfig {
   std::shared_ptr<const Mesh> mesh;
   HingedPanel panel;               // how its panel turns, if it has one, unless told otherwise
   std::string obj_path;            // resolved; empty for a model
-  std::string materials_path;      // of the library, resolved
+  std::string materials_path;      // the material library, resolved
   std::vector<std::string> notes;  // what was ignored or repaired in an OBJ, one line each
-  std::string digest;              // of the mesh and its materials
+  std::string digest;              // hash of the mesh and its materials
 };
 
 /// Reads the mapping; docs/models/materials.md lists the keys. An OBJ has a panel only

@@ -16,7 +16,7 @@ namespace dmise {
 namespace {
 
 constexpr double farthest_m = 1e12;
-constexpr double min_height_m = 0.01;  // of a fixed object above the ellipsoid
+constexpr double min_height_m = 0.01;  // least height of a fixed object above the ellipsoid
 
 Forms position() { return form::numbers(3, -farthest_m, farthest_m); }
 

@@ -19,12 +19,11 @@ struct Section;
 /// numerical integration or near another object is a `Trajectory` once the scenario is read.
 struct MotionConfig {
   std::variant<MotionModel, MeanElements> model;
-  std::string trajectory_path;  // of an OEM, SP3 or track, resolved; empty for other models
-  std::string satellite = {};   // of the SP3
-  std::string node_where = {};  // of `node`, for messages; empty for other models
-  std::vector<std::string> warnings = {};  // see `unusual_orbit_values`
-  std::optional<FlightConfig> flight =
-      {};  // of numerical integration; see core/config/fly_objects.h
+  std::string trajectory_path;  // an OEM, SP3 or track, resolved; empty for other models
+  std::string satellite = {};   // its name in the SP3
+  std::string node_where = {};  // place of the key `node`, for messages; empty for other models
+  std::vector<std::string> warnings = {};         // see `unusual_orbit_values`
+  std::optional<FlightConfig> flight = {};        // integrated; see core/config/fly_objects.h
   std::optional<ProximityConfig> proximity = {};  // near another; see core/config/place_deputies.h
 };
 

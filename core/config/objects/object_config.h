@@ -26,12 +26,12 @@ struct ObjectSource {
   std::string named;                    // as in the scenario: "demo" or a path; its name
   std::optional<Walker> walker;         // the constellation
   std::optional<Breakup> breakup;       // whose pieces they are; `sphere` has their albedo
-  DiffuseSphere sphere;                 // of objects of which no facts are known
+  DiffuseSphere sphere;                 // for objects of which no facts are known
   std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
   std::string where;                    // `file:line:column: objects[0].catalogue`, for messages
   std::vector<std::string> only_where;  // `file:line:column: key` of each name
-  ObjectModels models;                  // of the objects of all catalogues of the scenario
+  ObjectModels models;                  // rules for the objects of all catalogues of the scenario
 };
 
 /// An object of the scenario: `{name: inspector, motion: {..}, attitude: nadir}`.
@@ -41,11 +41,11 @@ struct OwnObject {
   std::uint32_t catalogue_number = 0;  // 0: assigned, see `first_own_number`
   MotionConfig motion;
   std::optional<AttitudeConfig> attitude;
-  std::optional<HingedPanel> panel;  // of the geometry, where there is one
+  std::optional<HingedPanel> panel;  // how the geometry's panel turns, if it has one
   std::optional<GeometryConfig> geometry;
   DiffuseSphere sphere;         // without a geometry
-  std::string model_path = {};  // of the model that gave attitude, panel and geometry; may be empty
-  std::optional<Glints> glints = {};  // of the model
+  std::string model_path = {};  // the model that gave attitude, panel and geometry; may be empty
+  std::optional<Glints> glints = {};  // taken from that model
 };
 
 /// How a node of the user's moves or turns an object; null: none does.

@@ -18,7 +18,7 @@ class YamlValue;
 /// launch/models, or the user's own.
 struct ObjectModel {
   std::string name, path;          // as named; resolved
-  std::string source;              // of its numbers
+  std::string source;              // where its numbers come from
   std::vector<std::string> names;  // patterns of the objects of catalogues that look so
   AttitudeConfig attitude;
   std::optional<HingedPanel> panel;
@@ -36,7 +36,7 @@ std::shared_ptr<const ObjectModel> shipped_object_model(const std::string& name)
 class ObjectModels {
  public:
   struct Rule {
-    std::string pattern;  // of names and numbers, with *, ? and [..] as of a shell
+    std::string pattern;  // matches names and numbers, with *, ? and [..] as in a shell
     std::shared_ptr<const ObjectModel> model;
   };
 

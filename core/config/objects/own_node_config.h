@@ -27,7 +27,7 @@ struct OwnNode {
   std::vector<std::string> run;  // program and arguments; empty: somebody joins it
   std::string run_where;         // `file:line:column: nodes[0].run`
   std::string directory;         // in which it runs: that of the scenario
-  bool is_function = false;      // of this process, which speaks for it
+  bool is_function = false;      // a function of this process, which speaks for it
   Tick period_ticks = 1;         // between those that it is asked for
   std::string options_json = "{}";
   bool is_fmu = false;                   // which moves or turns one object

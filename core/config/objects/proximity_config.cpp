@@ -14,7 +14,7 @@ namespace {
 
 constexpr double farthest_relative_m = 1e6;
 constexpr double fastest_m_per_s = 1e3;
-constexpr double min_distance_m = 1e-3;  // of a forced path from the chief
+constexpr double min_distance_m = 1e-3;  // a forced path comes no nearer to the chief
 constexpr double longest_wait_s = 3.2e8;
 
 Forms place_rtn() { return form::numbers(3, -farthest_relative_m, farthest_relative_m); }

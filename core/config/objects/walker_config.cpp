@@ -9,7 +9,7 @@ namespace {
 
 constexpr int max_satellites = max_walker_satellites;
 constexpr double min_axis_m = 6.5e6, max_axis_m = 1e9;  // SGP4 has no orbit within the air
-constexpr double equatorial_radius_m = Ellipsoid{}.equatorial_radius_m;  // of WGS 84
+constexpr double equatorial_radius_m = Ellipsoid{}.equatorial_radius_m;  // WGS 84
 
 int satellites_of(YamlMap& map, const YamlValue& value) {
   const auto total = map.find("total"), per_plane = map.find("per_plane");

@@ -15,7 +15,7 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t max_bytes = 4u << 20;
-constexpr double narrowest_m = 1e-18;  // of a box: its ends still differ
+constexpr double narrowest_m = 1e-18;  // least width of a box, whose ends still differ
 
 Curve curve_beside(const YamlValue& value) {
   const std::string path = value.existing_file();

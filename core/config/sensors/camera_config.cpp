@@ -36,7 +36,7 @@ void read_filters(const YamlValue& value, Camera& camera) {
   for (const YamlValue& filter : list) camera.filters.push_back({read_band(filter), {}});
 }
 
-/// Of the band as the detector sees it.
+/// `camera` has its band as the detector sees it.
 void check_blur(const YamlValue& optics, const Camera& camera) {
   const double sigma_px = psf_sigma_px(camera.optics, camera.band.centre_m);
   if (sigma_px > widest_sigma_px)
@@ -48,7 +48,7 @@ void check_blur(const YamlValue& optics, const Camera& camera) {
             sigma_px, widest_sigma_px));
 }
 
-/// Of the band as the detector sees it.
+/// `camera` has its band as the detector sees it.
 void read_magnitude_system(const YamlValue& value, Camera& camera) {
   const auto system = magnitude_system_of(value.choice());
   try {

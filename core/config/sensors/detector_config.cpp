@@ -7,7 +7,7 @@ namespace dmise {
 namespace {
 
 Forms forms_of(const DetectorParameter& p) {
-  if (p.key == "quantum_efficiency") return form::above(0.0, 1.0) | form::text();  // of a curve
+  if (p.key == "quantum_efficiency") return form::above(0.0, 1.0) | form::text();  // text: a curve
   if (std::holds_alternative<bool Detector::*>(p.value)) return form::flag();
   if (std::holds_alternative<int Detector::*>(p.value))
     return form::integer(std::int64_t(p.least), std::int64_t(p.most));

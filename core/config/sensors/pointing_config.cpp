@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 constexpr double min_sine_to_up = 1e-6;  // between boresight and up
-constexpr double max_offset_deg = 80.0;  // of a target's image from the boresight
+constexpr double max_offset_deg = 80.0;  // between a target's image and the boresight
 
 constexpr const char* tracking_names[] = {"fixed", "sidereal", "target", "moving"};
 

@@ -37,7 +37,7 @@ struct Camera {
   Optics optics;
   Detector detector;
   Band band;
-  MagnitudeScale magnitudes;               // of detections and of PHOTZP
+  MagnitudeScale magnitudes;               // detections and PHOTZP are in it
   std::vector<std::string> warnings = {};  // see `unusual_camera_values`
   Exclusion exclusion = {};
   std::vector<Filter> filters = {};  // in the wheel after `band`: an observatory changes them
@@ -50,7 +50,7 @@ struct SiteConfig {
   double latitude_deg = 0.0;   // geodetic, [-90, 90]
   double longitude_deg = 0.0;  // east, [-180, 360)
   double height_m = 0.0;       // above the ellipsoid, [-500, 9000]
-  Surroundings surroundings;   // of the site; the sensor's take precedence
+  Surroundings surroundings;   // what is around the site; the sensor's take precedence
 };
 
 /// A sensor aboard an object, given by number or name.
@@ -73,8 +73,7 @@ struct PointSky {
 struct PointTarget {
   std::string object;      // catalogue number or name
   bool geometric = false;  // along the straight line, not the apparent direction
-  double offset_x_deg = 0.0, offset_y_deg = 0.0;  // of its image from the boresight, along columns
-                                                  // and rows
+  double offset_x_deg = 0.0, offset_y_deg = 0.0;  // its image from the boresight, columns and rows
   std::string where = {};  // `file:line:column: sensors[0].pointing.target`, for messages
 };
 /// Fixed to the body of the platform.
@@ -141,31 +140,31 @@ struct SensorConfig {
   double mask_deg = 0.0;  // minimum elevation for `dmise visible`, on the ground, [0, 89]
   EffectSet effects;      // by the user; what a plan leaves to choose is as it is without a plan
   Accuracy accuracy{};    // what frames are planned for; none: effects run as above
-  /// Of a sensor that is planned: effects of the scenario before the plan, for truth.
+  /// The scenario's effects before the plan, for truth, if the sensor is planned.
   std::optional<EffectSet> unplanned = {};
   std::optional<double> synthetic_stars_to_v_mag =
       {};              // the scenario's; none: there are none; infinity: to each frame's limit
   bool detect = true;  // false: frames are reported without detection
   bool light_curves = false;  // whether detections of streaks have their light over time
-  // Of a program that detects in its frames.
+  // A program of the user's detects in its frames.
   struct Detector {
-    std::string node;   // of `nodes`
+    std::string node;   // its name in `nodes`
     std::string where;  // `file:line:column: key`, for messages
   };
   std::optional<Detector> detector = {};  // none: our own
-  // Of a program that observes in place of a camera: the camera's members are not used.
+  // A program of the user's observes in place of a camera, whose members are not used.
   struct Observing {
-    std::string node;               // of `nodes`
+    std::string node;               // its name in `nodes`
     std::string where;              // `file:line:column: key`, for messages
     bool truth = false;             // it is told the states of all objects
-    double half_angle_deg = 180.0;  // of a cone about its boresight that contains its field
+    double half_angle_deg = 180.0;  // a cone about its boresight with this contains its field
   };
   std::optional<Observing> observing = {};     // none: a camera does
-  std::vector<Malfunction> malfunctions = {};  // of its devices in an observatory
-  RecordedPlans recorded_plans = {};  // of a run that is replayed; empty: frames are planned
+  std::vector<Malfunction> malfunctions = {};  // faults of its devices in an observatory
+  RecordedPlans recorded_plans = {};  // from a run that is replayed; empty: frames are planned
 
   bool is_camera() const { return !observing; }
-  /// Of `nodes`, whose program its process starts; empty: none.
+  /// The one of `nodes` whose program its process starts; empty: none.
   std::string started_node() const {
     return observing ? observing->node : detector ? detector->node : "";
   }

@@ -15,7 +15,7 @@ namespace dmise {
 namespace {
 
 constexpr double far_sigmas = 5.0;      // where a normal without ends is tried
-constexpr double min_share = 0.01;      // of a normal between min and max
+constexpr double min_share = 0.01;      // least part of a normal between min and max
 constexpr double max_integer = 0x1p53;  // exact in double
 constexpr std::uint32_t max_draws = 10'000;
 const std::vector<std::string> of_lists{"uniform", "log_uniform", "integers", "one_of"};
@@ -52,7 +52,7 @@ bool Distribution::is(const YAML::Node& node) {
   const auto entry = node.begin();
   if (!entry->first.IsScalar()) return false;
   const std::string& name = entry->first.Scalar();
-  if (name == "normal") return entry->second.IsMap();  // of a panel it is a list
+  if (name == "normal") return entry->second.IsMap();  // a panel's `normal` is a list
   return entry->second.IsSequence() && std::ranges::find(of_lists, name) != of_lists.end();
 }
 

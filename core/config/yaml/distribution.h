@@ -18,8 +18,8 @@ class Distribution {
   /// What a distribution gave: a scalar, or one of its choices.
   struct Value {
     std::string scalar;  // without a choice
-    int choice = -1;     // of `one_of`
-    std::string what;    // of `ends`: "the least of its uniform"
+    int choice = -1;     // index of the choice; -1: a scalar
+    std::string what;    // from `ends` alone: "the least of its uniform"
   };
 
   /// Whether a value is a distribution, well-formed or not.
@@ -33,7 +33,7 @@ class Distribution {
   explicit Distribution(const YamlValue& value);
 
   const YamlValue& value() const { return value_; }
-  std::vector<YamlValue> choices() const;  // of `one_of`; else empty
+  std::vector<YamlValue> choices() const;  // only `one_of` has some
 
   /// Draws a value. Equal keys give equal values; numbers have 12 significant digits.
   Value draw(const RngKey& key) const;
@@ -51,10 +51,10 @@ class Distribution {
   YamlValue value_;
   std::string name_;
   Kind kind_ = Kind::uniform;
-  double least_ = 0.0, most_ = 0.0;  // of a time: seconds after `from_`
+  double least_ = 0.0, most_ = 0.0;  // times are seconds after `from_`
   double mean_ = 0.0, sigma_ = 0.0;
   std::string from_;
-  std::size_t count_ = 0;  // of choices
+  std::size_t count_ = 0;  // number of choices
 };
 
 /// Throws `ConfigError` with the place of the first distribution in a file, if there is one, and

@@ -29,12 +29,12 @@ struct Form {
   enum class Kind { number, integer, text, time, flag, choice, list, map };
 
   Kind kind = Kind::text;
-  Bounds bounds{};                        // of a number
-  std::int64_t least = 0, most = 0;       // of a whole number
-  std::vector<std::string> words{};       // of a choice; of a text those that editors suggest
-  std::size_t fewest = 0, greatest = 0;   // of a list: number of items; greatest 0: no limit
-  std::vector<Form> items{};              // of a list: forms of each
-  const Section& (*section)() = nullptr;  // of a map
+  Bounds bounds{};                        // range, if a number
+  std::int64_t least = 0, most = 0;       // range, if a whole number
+  std::vector<std::string> words{};       // choices; if a text, those that editors suggest
+  std::size_t fewest = 0, greatest = 0;   // limits of a list's length; greatest 0: no limit
+  std::vector<Form> items{};              // forms of each item, if a list
+  const Section& (*section)() = nullptr;  // keys, if a map
 };
 using Forms = std::vector<Form>;
 
@@ -86,7 +86,7 @@ Forms above(double least, double most);  // `least` itself is refused
 Forms positive();
 Forms not_negative();
 Forms integer(std::int64_t least, std::int64_t most);
-Forms seed();  // of random numbers: 0 to 2^63 - 1
+Forms seed();  // for random numbers: 0 to 2^63 - 1
 Forms text(std::vector<std::string> suggested = {});
 Forms time();  // UTC
 Forms flag();

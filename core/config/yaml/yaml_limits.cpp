@@ -61,7 +61,7 @@ class Counter : public YAML::EventHandler {
   struct Open {
     YAML::anchor_t anchor;
     std::size_t values_before;
-    std::size_t deepest = 1;  // of its content, itself included
+    std::size_t deepest = 1;  // levels within it, itself included
   };
 
   [[noreturn]] void refuse_depth(const YAML::Mark& mark) const {

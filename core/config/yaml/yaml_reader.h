@@ -85,7 +85,7 @@ class YamlValue {
   YAML::Node node_;
   std::shared_ptr<const std::string> file_;
   std::string path_;
-  const Forms* forms_ = nullptr;  // of its section
+  const Forms* forms_ = nullptr;  // that its section allows
 };
 
 /// Reads the file that `value` names, or the preset of this name among launch/KINDs ("camera",
@@ -93,8 +93,8 @@ class YamlValue {
 YamlValue load_preset(const std::string& kind, const YamlValue& value);
 
 /// The keys of a YAML mapping. Each model reads its own; `done()` refuses keys that were not read
-/// and suggests the nearest known one. With a section, keys, types, ranges and defaults are those
-/// of the section: asking for others throws `std::logic_error`.
+/// and suggests the nearest known one. A section decides keys, types, ranges and defaults: asking
+/// for others throws `std::logic_error`.
 class YamlMap {
  public:
   explicit YamlMap(const YamlValue& value);
@@ -107,7 +107,7 @@ class YamlMap {
   /// has.
   void refuse(std::string_view key, const std::string& reason);
 
-  // Of a key that is not given: the default that its section states, if it states one.
+  // A key that is not given has the default that its section states, if it states one.
   double number(std::string_view key) { return given_or_default(key).number(); }
   double number(std::string_view key, Bounds bounds) { return require(key).number(bounds); }
   std::int64_t integer(std::string_view key) { return given_or_default(key).integer(); }

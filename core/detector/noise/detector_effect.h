@@ -96,7 +96,7 @@ struct ParameterOf {
   double least = 0.0, most = 1.0;
   bool least_open = false;       // `least` itself is refused
   bool required = false;         // in YAML
-  std::string_view reason = {};  // of the range, for messages
+  std::string_view reason = {};  // why the range is so, for messages
 
   double number_of(const Owner& owner) const {
     return std::visit([&](auto member) { return double(owner.*member); }, value);

@@ -18,7 +18,7 @@
 namespace dmise {
 
 inline constexpr float poisson_switch_mean = 24.0f;
-inline constexpr int poisson_most_steps = 128;  // of the sum upwards
+inline constexpr int poisson_most_steps = 128;  // terms of the sum upwards
 inline constexpr float poisson_largest_mean = 1e12f;
 
 /// out[i] = deviate of mean[i] for pixel first + i; in place when `out` is `mean`. Deviates are

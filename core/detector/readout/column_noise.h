@@ -19,7 +19,7 @@ struct ColumnNoise {
   using Prepared = std::vector<float>;  // by column [e-]
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
-  /// Of a pixel's noise alone, because the offsets are new in each frame.
+  /// Only a pixel's noise has an error, because the offsets are new in each frame.
   ErrorBound error(int, const PlanFacts& f) const;
   static double cost_s(int level, const PlanFacts& f);
 };

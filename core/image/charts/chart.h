@@ -44,8 +44,8 @@ struct Chart {
   int width_px = 1400, height_px = 820;
 };
 
-/// Returns ticks of a logarithmic axis over [least, most], `least` > 0: at 1, 2 and 5 times powers
-/// of ten, with labels such as "20,000", and short ones at the other multiples.
+/// Returns ticks of a logarithmic axis over [least, most], `least` > 0: 1, 2 and 5 times a power of
+/// ten with labels such as "20,000", and short ones at the other multiples.
 std::vector<ChartTick> logarithmic_ticks(double least, double most);
 
 /// Renders as SVG 1.1. Equal charts give equal text.

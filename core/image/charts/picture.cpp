@@ -10,8 +10,8 @@
 namespace dmise {
 namespace {
 
-constexpr int min_columns = 640;       // of a picture: narrower frames have larger pixels
-constexpr double black_sigma = 2.5;    // of the sky's noise, below the median
+constexpr int min_columns = 640;       // narrower frames have larger pixels in a picture
+constexpr double black_sigma = 2.5;    // below the median, in the sky's noise
 constexpr double white_sigma = 250.0;  // above it
 constexpr double white_share = 0.005;  // maximum fraction of pixels above white
 constexpr double linear_sigma = 4.0;   // where asinh turns from linear to logarithmic
@@ -47,7 +47,7 @@ Sky sky_of(const std::vector<float>& pixels) {
   const float white = median + float(white_sigma) * sigma;
   const auto beyond = std::ranges::count_if(sample, [&](float v) { return v > white; });
   if (double(beyond) <= white_share * double(sample.size())) return {median, sigma};
-  const double brightest = 0.01 * double(beyond) / double(sample.size());  // of these pixels
+  const double brightest = 0.01 * double(beyond) / double(sample.size());  // 1 % of these
   return {median, float((quantile_of(sample, 1.0 - brightest) - median) / white_sigma)};
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t row_grain = 8;
 
-// Linear interpolation weight of node `node` of `count` equally spaced from the first to the last
-// of `length` pixels: 1 there, 0 at its neighbours. A single node has weight 1 everywhere.
+// Linear interpolation weight of node `node`, one of `count` evenly spaced over `length` pixels: 1
+// there, 0 at its neighbours. A single node has weight 1 everywhere.
 float hat(int node, int count, double at, double length) {
   if (count == 1) return 1.0f;
   const double x = std::clamp(at / (length - 1.0), 0.0, 1.0) * (count - 1);

@@ -54,7 +54,7 @@ class DefocusBlur {
   double start_s_ = 0.0, exposure_s_ = 0.0;
   std::map<Key, Kernel> kernels_;
   Key of_grid_{};
-  std::unique_ptr<BlurGrid> grid_;  // of a tile, with the kernel of `of_grid_`
+  std::unique_ptr<BlurGrid> grid_;  // for a tile, with the kernel of `of_grid_`
   ExpectedElectronImage tile_;
 };
 

@@ -249,7 +249,7 @@ namespace {
 struct Bands {
   std::vector<std::vector<std::uint32_t>> of_band;
   std::vector<std::uint32_t> in_many;  // that are in more than one band
-  std::vector<ShortArc> short_arc;     // of each arc
+  std::vector<ShortArc> short_arc;     // one for each arc
   std::vector<bool> all_inside;        // which arcs need no sums, as all of their light is
 
   Bands(std::span<const Arc> arcs, const PsfTable& psf, const DepositView& image, DepositSums sums,

@@ -8,8 +8,8 @@
 #include "core/base/pixel.h"
 #include "core/optics/psf_table.h"
 
-// Deposits point and moving sources on the pixels analytically: the path integral over the exposure
-// of the pixel-integrated Gaussian. There is no grid, hence no ringing and no lost light.
+// Deposits point and moving sources on the pixels analytically: the pixel-integrated Gaussian is
+// integrated along the path in the exposure. There is no grid, hence no ringing and no lost light.
 namespace dmise {
 
 /// Path of one source during part of the exposure: the parabola in time through three positions,
@@ -17,7 +17,7 @@ namespace dmise {
 /// linearly with time, from mean (1 - tilt) to mean (1 + tilt).
 struct Arc {
   PixelPosition start, middle, end;  // anywhere, also outside the frame
-  double signal_e = 0.0;             // of the whole arc, expected [e-], >= 0
+  double signal_e = 0.0;             // light of the whole arc, expected [e-], >= 0
   double tilt = 0.0;                 // [-1, 1]
   double may_miss_e = 0.0;           // in a pixel, >= 0; 0: 2e-6 of its brightest
 

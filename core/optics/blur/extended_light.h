@@ -13,8 +13,8 @@ struct ExtendedLight {
 };
 
 /// Adds such light to the frame, blurred by a Gaussian. Its width is right to the second moment
-/// from 0.29 px on; narrower ones blur nothing. The window holds what is within `gaussian_reach_px`
-/// of the frame.
+/// from 0.29 px on; narrower ones blur nothing. The window holds what is no farther from the frame
+/// than `gaussian_reach_px`.
 void add_by_gaussian(const ExtendedLight& source, double sigma_px, ExpectedElectronImage& image,
                      Threads& threads);
 int gaussian_reach_px(double sigma_px);

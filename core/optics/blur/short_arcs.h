@@ -29,7 +29,7 @@ class ShortArcRule {
 
  private:
   double per_width2_;
-  std::array<double, max_short_nodes> missed_;  // of the light, in the brightest pixel
+  std::array<double, max_short_nodes> missed_;  // share of the light, in the brightest pixel
 };
 
 }  // namespace dmise

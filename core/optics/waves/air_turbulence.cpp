@@ -10,7 +10,7 @@ namespace dmise {
 namespace {
 
 constexpr double deviations = 4.0;       // one exposure in 3000 has more
-constexpr double aperture_widths = 3.0;  // of a point spread, in which light is summed
+constexpr double aperture_widths = 3.0;  // radius in which light is summed, in widths of a point
 
 /// lambda / r0: the scale of seeing.
 double seeing_px(const AirFacts& air) { return air.airy_px * air.apertures_per_r0; }
@@ -54,8 +54,8 @@ bool may_bleed(int level, const PlanFacts& f) {
                       : f.brightest_e() * share > f.air.bleeds_at_e;
 }
 
-/// Light beside sources that counts as background, in noise. In the reference it is less than half
-/// of the noise there by definition.
+/// Light beside sources that counts as background, in noise. In the reference that is less than
+/// half of the noise there by definition.
 double beside_sources(int level, const PlanFacts& f, double radius_px) {
   constexpr double half_noise = 0.5, brightest_speckle = 8.0;
   const double source_e = f.shapes > 0 ? PlanFacts::glint_e : f.brightest_e();

@@ -37,7 +37,7 @@ PhaseScreen FrozenFlow::at(double distance, double direction_rad, double r0_samp
                      up = around(distance * std::sin(direction_rad));
   const auto block = std::int64_t(std::floor(distance / length_));
   const double fade = 0.5 * pi * (distance / length_ - double(block));
-  const double scale = std::pow(r0_samples, -5.0 / 6);  // of the phase: D goes as r0^(-5/3)
+  const double scale = std::pow(r0_samples, -5.0 / 6);  // for the phase: D goes as r0^(-5/3)
   PhaseScreen window{side, std::vector<float>(std::size_t(side) * std::size_t(side))};
   const auto add = [&](const Field& f, double weight) {
     for (int y = 0; y < side; ++y) {

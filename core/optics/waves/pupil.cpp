@@ -22,7 +22,7 @@ class ZernikePolynomial {
     m_ = std::abs(signed_m);
     terms_ = (n - m_) / 2 + 1;
     const double norm = std::sqrt(m_ == 0 ? n + 1.0 : 2.0 * (n + 1));
-    for (int k = 0; k < terms_; ++k)  // of rho^(n - 2k)
+    for (int k = 0; k < terms_; ++k)  // factor of rho^(n - 2k)
       coefficient_[std::size_t(k)] =
           norm * (k % 2 ? -1.0 : 1.0) * factorial(n - k) /
           (factorial(k) * factorial((n + m_) / 2 - k) * factorial((n - m_) / 2 - k));

@@ -36,7 +36,7 @@ struct Pupil {
 struct PupilGrid {
   int side = 0;           // samples of the pupil plane, and of the image it transforms to
   double step_m = 0.0;    // between samples
-  double cell_rad = 0.0;  // of the kernel
+  double cell_rad = 0.0;  // a cell of the kernel
   int fine = 1;           // image samples per cell and axis, odd
 };
 
@@ -50,7 +50,7 @@ PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, i
 struct ScreenAhead {
   const PhaseScreen* screen = nullptr;  // null: no turbulence
   double step_m = 0.0;                  // between samples
-  double scale = 1.0;                   // of its phase: wavelength of the screen / of the light
+  double scale = 1.0;                   // for its phase: wavelength of the screen / of the light
 };
 
 /// A real and even transfer function at the frequencies of a grid.
@@ -67,7 +67,7 @@ class SampledOtf {
     return std::size_t(y) * std::size_t(side_ / 2 + 1) + std::size_t(x);
   }
   int side_;
-  std::vector<double> values_;  // of frequencies that are not negative
+  std::vector<double> values_;  // only frequencies that are not negative
 };
 
 /// Kernel of the pupil through a screen, with its transfer function multiplied by `extra` (further

@@ -7,8 +7,8 @@ namespace dmise {
 /// Turbulence in front of one sensor, along its line of sight.
 struct SensorSeeing {
   double r0_m = 0.1;  // Fried's parameter at 0.5 um, > 0; infinite: none
-  double outer_scale_m = std::numeric_limits<double>::infinity();  // of von Karman's spectrum
-  double wind_m_per_s = 10.0;       // of the frozen screen past the aperture, >= 0
+  double outer_scale_m = std::numeric_limits<double>::infinity();  // in von Karman's spectrum
+  double wind_m_per_s = 10.0;       // moves the frozen screen past the aperture, >= 0
   double wind_direction_deg = 0.0;  // towards which it moves: 0 is +x of the image, 90 is +y
 
   /// Fried's parameter at another wavelength: proportional to wavelength^(6/5).

@@ -19,7 +19,7 @@ struct Breakup {
   BreakupEvent event;
   std::optional<std::uint64_t> seed;  // none: the scenario's
   MotionState<Teme> parent;           // at the epoch
-  Utc epoch;                          // of the breakup
+  Utc epoch;                          // when it broke up
 
   /// Numbers that its fragments may take: `pieces_over` the least length, rounded down.
   int fragment_count() const;
@@ -28,12 +28,12 @@ struct Breakup {
 /// Fragments as a catalogue has them.
 struct Fragments {
   std::vector<MeanElements> elements;
-  std::vector<BreakupPiece> pieces;  // of each
+  std::vector<BreakupPiece> pieces;  // one for each of `elements`
   int too_heavy = 0;                 // left out, see `draw_pieces`
   int open = 0;                      // left out: they leave the Earth
   int no_path = 0;                   // left out: SGP4 has no orbit like theirs
   int decayed = 0;                   // left out: SGP4 has them enter the Earth before the start
-  int falling = 0;                   // of `elements`: the perigee is below the ground
+  int falling = 0;                   // still in `elements`: the perigee is below the ground
 };
 
 /// Draws the pieces, adds their velocities to the parent's and fits element sets for SGP4 to the

@@ -14,10 +14,10 @@ enum class BrokenStructure { upper_stage, spacecraft };
 struct BreakupEvent {
   BreakupKind kind = BreakupKind::explosion;
   BrokenStructure structure = BrokenStructure::upper_stage;
-  double mass_kg = 0.0;                 // of the parent, > 0
+  double mass_kg = 0.0;                 // the parent's, > 0
   double scale = 1.0;                   // S of an explosion, > 0
-  double projectile_mass_kg = 0.0;      // of a collision, > 0
-  double relative_speed_m_per_s = 0.0;  // of a collision, > 0
+  double projectile_mass_kg = 0.0;      // in a collision, > 0
+  double relative_speed_m_per_s = 0.0;  // in a collision, > 0
   double min_length_m = 0.1;            // characteristic length, > 0
 
   bool operator==(const BreakupEvent&) const = default;

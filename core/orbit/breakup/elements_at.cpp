@@ -49,7 +49,7 @@ bool set_orbit(MeanElements& set, const State& state) {
 /// One fit. SGP4's state differs from that of the conic with its elements by terms of J2, so that
 /// the difference, subtracted from where the conic is to be, shrinks a thousandfold a round.
 struct Fit {
-  State aim;          // of the conic
+  State aim;          // where the conic is to be
   MeanElements best;  // elements nearest so far
   double off = HUGE_VAL;
 };

@@ -48,8 +48,8 @@ struct CatalogueFile {
 };
 
 /// Reads a catalogue file (optionally gzip): TLE with or without names (also "0 NAME"), gpredict's
-/// satellites.dat, OMM in JSON, CSV, XML or KVN. A bad record does not affect others. Of two sets
-/// of one object with equal epochs the later in the file is kept; number 0 (not catalogued) never
+/// satellites.dat, OMM in JSON, CSV, XML or KVN. A bad record does not affect others. The later in
+/// the file of two sets of one object with equal epochs is kept; number 0 (not catalogued) never
 /// identifies an object. Throws `ConfigError` if the file cannot be read or has none of these
 /// formats.
 CatalogueFile read_catalogue(const std::string& path, const CatalogueOptions& options = {});

@@ -16,7 +16,7 @@ struct FactsColumns {
   std::string id = "NORAD_CAT_ID";  // catalogue numbers
   std::string size;
   SizeKind kind = SizeKind::diameter;
-  SizeUnit unit = SizeUnit::m;              // of sizes; a length also of dimensions
+  SizeUnit unit = SizeUnit::m;              // for sizes; a length also for dimensions
   std::array<std::string, 3> dimensions{};  // length, width, height, in place of a size
   std::string albedo, standard_magnitude;
 };
@@ -29,8 +29,8 @@ struct ImportedFacts {
 
 /// Reads facts from a CSV with a header of somebody's columns. Blank fields, and sizes of 0, are
 /// unknown. Rows that are wrong, or of an object that there was, are refused with the column.
-/// Throws `ConfigError` if a column is missing (with those that there are), or if the unit is none
-/// of the kind.
+/// Throws `ConfigError` if a column is missing (with those that there are), or if the kind has no
+/// such unit.
 ImportedFacts import_facts(std::string_view text, const std::string& source,
                            const FactsColumns& columns);
 

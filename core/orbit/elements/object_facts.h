@@ -28,7 +28,7 @@ struct ObjectFactsFile {
 
 /// Reads a CSV with a header: catalogue_number (or NORAD_CAT_ID), and any of standard_magnitude,
 /// rcs_m2, length_m, width_m, height_m, albedo; other columns are ignored, blank fields are
-/// unknown. Of two rows of one object the later is refused. Throws `ConfigError` if there is no
+/// unknown. The later of two rows of one object is refused. Throws `ConfigError` if there is no
 /// column of numbers.
 ObjectFactsFile read_object_facts(const std::string& path);
 ObjectFactsFile parse_object_facts(std::string_view text, const std::string& source);

@@ -106,8 +106,8 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   const int& line_;
   OmmFields omm_;
   std::string key_;
-  int depth_ = 0;          // of objects and arrays
-  int message_depth_ = 0;  // of the fields of the message being read; 0 between messages
+  int depth_ = 0;          // open objects and arrays
+  int message_depth_ = 0;  // where the fields of the message being read are; 0 between messages
   int first_line_ = 1;
 };
 

@@ -15,7 +15,7 @@ using namespace sgp4;
 
 namespace {
 
-constexpr std::size_t tile_states = 4096;  // of output: 57 bytes each
+constexpr std::size_t tile_states = 4096;  // 57 bytes of output each
 constexpr std::size_t tile_of_thread = 1024;
 
 void check_sizes(std::size_t n, std::span<const double> position, std::span<const double> velocity,

@@ -14,8 +14,8 @@ struct Slopes {
 };
 
 DMISE_INLINE Slopes slopes(const SynchronousTerms<Lanes>& b, int first, Pack lambda, Pack n, Pack) {
-  // Sines of lambda - 0.13130908, 2 (lambda - 2.8843198) and 3 (lambda - 0.37448087) by multiples
-  // of lambda.
+  // Sines of lambda - 0.13130908, 2 (lambda - 2.8843198) and 3 (lambda - 0.37448087) follow from
+  // those of multiples of lambda.
   const SinCos l = sin_cos(lambda);
   const SinCos l2 = turned(l, l);
   const SinCos l3 = turned(l2, l);

@@ -53,7 +53,7 @@ struct Group {
   bool deep = false;
   Resonance resonance = Resonance::none;
   Shape shape = Shape::circle;
-  std::vector<std::uint32_t> index;  // of the object in each lane
+  std::vector<std::uint32_t> index;  // which object each lane has
   Blocks<NearTerms<Lanes>> near;
   Blocks<DeepTerms<Lanes>> far;
   Blocks<SynchronousTerms<Lanes>> day;

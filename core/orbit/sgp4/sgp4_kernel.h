@@ -1,6 +1,6 @@
 // SGP4 on packs of objects, one source for every instruction set: included only by
-// sgp4_kernel_SET.cpp. Each lane's result depends on that lane alone: if the lanes
-// of a pack take different branches, the pack evaluates both and each lane selects its own.
+// sgp4_kernel_SET.cpp. Each lane's result depends on that lane alone: if the lanes of
+// a pack take different branches, the pack evaluates both and each lane selects its own.
 //
 // Changes of form, not of result, against the scalar reference:
 // - mean anomaly and argument of perigee are used only as their sum, and the node separately;

@@ -15,7 +15,7 @@ struct Six {
 /// Destinations of one vector's lanes, `index` ascending.
 struct Places {
   const std::uint32_t* index;
-  unsigned count;  // of lanes that hold an object: the first ones
+  unsigned count;  // lanes that hold an object: the first ones
   bool whole;      // all lanes, neighbours
 #if defined(__AVX512F__)
   // All within 16 from the first: two compressed stores, one per half.
@@ -52,7 +52,7 @@ DMISE_INLINE Places places_of(const std::uint32_t* index, std::size_t objects) {
 /// Stores runs of neighbours together.
 DMISE_INLINE void put_runs(const Six& s, const Places& p, const Output& out) {
   for (unsigned lane = 0, next; lane < p.count; lane = next) {
-    const std::uint32_t to = p.index[lane] - lane;  // of lane 0; elements before it are kept
+    const std::uint32_t to = p.index[lane] - lane;  // lane 0's; elements before it are kept
     for (next = lane + 1; next < p.count && p.index[next] - next == to; ++next) {
     }
     const unsigned run = (1u << next) - (1u << lane);

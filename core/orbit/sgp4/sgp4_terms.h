@@ -87,8 +87,8 @@ struct HalfDayTerms {
   T d2201, d2211, d3210, d3222, d4410, d4422, d5220, d5232, d5421, d5433;
 };
 
-/// The integrator node last reached by a block's lanes, and the slopes there. `time` is a multiple
-/// of 720 min from the epoch; NaN if there is none.
+/// The integrator node last reached by a block's lanes, and the slopes there. `time` is a whole
+/// number of 720 min from the epoch; NaN if there is none.
 struct ResonanceNode {
   Lanes time, lambda, n, n_dot, n_ddot;
 };

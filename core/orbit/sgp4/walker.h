@@ -24,8 +24,8 @@ struct Walker {
   double semi_major_axis_m = 0.0;         // mean, see `kozai_mean_motion_rad_per_min`
   double inclination_rad = 0.0;           // [0, pi]
   double raan_spread_rad = 0.0;           // 2 pi: delta; pi: star
-  double raan_rad = 0.0;                  // of the first plane, in TEME of the epoch
-  double argument_of_latitude_rad = 0.0;  // of the first satellite
+  double raan_rad = 0.0;                  // the first plane's, in TEME of the epoch
+  double argument_of_latitude_rad = 0.0;  // the first satellite's
   double spacing_s = 0.0;  // > 0: a train, below; 0: places are spread over the plane
   Utc epoch;
 

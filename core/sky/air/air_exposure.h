@@ -24,7 +24,7 @@ struct AirExposure {
   const std::optional<Clouds>& clouds;
   std::optional<BlownTurbulence> turbulence;  // none: scintillation ignores motion
   double aperture_m, exposure_s, site_height_m;
-  double time_s;  // of mid exposure, since the start of the run
+  double time_s;  // mid exposure, since the start of the run
   Vec<Gcrs> up;   // unit, at mid exposure
   Rotation<Enu, Gcrs> enu_from_gcrs;
   std::uint64_t seed;

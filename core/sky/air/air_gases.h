@@ -6,8 +6,8 @@ namespace dmise {
 /// Gases over a site that absorb in bands.
 struct AirGases {
   double pwv_mm = 0.0;            // water vapour as a layer of water towards the zenith, [0, 100]
-  double pressure_hpa = 1013.25;  // of the air with oxygen, carbon dioxide and methane, [0, 1100]
-  double temperature_k = 288.15;  // of the air at the site; matters beyond 2.5 um alone
+  double pressure_hpa = 1013.25;  // oxygen, carbon dioxide and methane go with it, [0, 1100]
+  double temperature_k = 288.15;  // air at the site; matters beyond 2.5 um alone
 
   bool operator==(const AirGases&) const = default;
 };

@@ -16,9 +16,9 @@ struct UniformCloud {
 /// Patches of cloud in a thin layer, drifting with the wind.
 struct PatchyClouds {
   double cover = 0.5;         // share of the layer, [0, 1]
-  double transmission = 0.1;  // of the middle of a cloud at the zenith, [0, 1]
+  double transmission = 0.1;  // in the middle of a cloud at the zenith, [0, 1]
   double patch_m = 3000.0;    // size of the largest pieces
-  double height_m = 3000.0;   // of the layer above the site
+  double height_m = 3000.0;   // the layer above the site
   double wind_east_m_per_s = 8.0;
   double wind_north_m_per_s = 0.0;
   std::uint64_t seed = 1;
@@ -43,7 +43,7 @@ class CloudMap {
 
  private:
   Clouds clouds_;
-  double threshold_ = 0.0;  // of the pattern, above which there is cloud
+  double threshold_ = 0.0;  // there is cloud where the pattern is above it
 };
 
 }  // namespace dmise

@@ -16,8 +16,8 @@ struct InfraredAir {
 /// The air at 2.506 to 25 um, every 10 cm-1, by rising wavelength. Depths are
 ///   water lines  a (W X P^0.9 T^2)^0.55     water, continuum  (b W / T^2 + c P) W X
 ///   mixed gases  d (X P^1.76)^p             ozone  e X^0.73
-/// with water W [mm], airmass X, P of 1013.25 hPa and T of 288.15 K at the site; the height is that
-/// of the table times P^0.08. Source: LOWTRAN 7
+/// with water W [mm], airmass X, P of 1013.25 hPa and T of 288.15 K at the site; the height is the
+/// table's times P^0.08. Source: LOWTRAN 7
 /// (Kneizys et al. 1988, AFGL-TR-88-0177) in the U.S. Standard Atmosphere, 20 cm-1 wide, with 330
 /// ppm of carbon dioxide (tests/reference/infrared_gas_tables.py).
 std::vector<InfraredAir> infrared_air(const AirGases& gases, double airmass);

@@ -68,11 +68,11 @@ class Refraction {
 
   Weather weather_{.pressure_hpa = 0.0};
   double wavelength_um_ = 0.55;
-  double tan_term_rad_ = 0.0, tan3_term_rad_ = 0.0;  // of the apparent zenith distance
+  double tan_term_rad_ = 0.0, tan3_term_rad_ = 0.0;  // factors of tan z and tan^3 z, z apparent
   double bennett_scale_ = 0.0;                       // 0: no air
   std::array<double, 2> bends_{};                    // how much more traced rays are bent
   double refractivity_ = 0.0;                        // n - 1 at the observer
-  double scale_height_m_ = 0.0;                      // of the air's density at the observer
+  double scale_height_m_ = 0.0;                      // by which density falls at the observer
   double aside_at_horizon_ = 1.0;                    // keeps `aside_m` finite: its two constants
   double aside_above_ = 1.0;
 };

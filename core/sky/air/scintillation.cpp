@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr double pattern_m_per_s = 20.0;  // of the shadows over the aperture
+constexpr double pattern_m_per_s = 20.0;  // shadows cross the aperture so fast
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace dmise {
 namespace {
 
 struct Layer {
-  double from_m, kelvin, kelvin_per_m, pressure;  // of its lower end; geopotential height
+  double from_m, kelvin, kelvin_per_m, pressure;  // at its lower end; geopotential height
 };
 
 /// Pressure at a height over that at the lower end of a layer.

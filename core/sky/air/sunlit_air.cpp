@@ -20,7 +20,7 @@ constexpr std::size_t heights = std::size_t(AirColumns::top_m / height_step_m) +
 // Light by columns of air and ozone [atm-cm]: even steps of the root.
 constexpr double max_air = 400.0, max_ozone = 60.0;
 constexpr std::size_t airs = 64, ozones = 32;
-constexpr double darkest = -200.0;  // of logarithms
+constexpr double darkest = -200.0;  // logarithm that stands for no light
 
 /// Along a straight line, by steps that grow with the way.
 AirColumn column_along(double height_m, double cos_zenith) {

@@ -15,8 +15,8 @@ struct EarthDisc {
   static double cost_s(int level, const PlanFacts& f);
 };
 
-/// Of clouds, seas and air together: the Earth's Bond albedo (Stephens et al. 2015, Rev. Geophys.
-/// 53, 141: 0.29).
+/// The Earth's Bond albedo, with clouds, seas and air (Stephens et al. 2015, Rev. Geophys. 53, 141:
+/// 0.29).
 inline constexpr double usual_earth_albedo = 0.3;
 
 /// The Earth's radiance in a band as seen from one place: sunlight that an even Lambert surface

@@ -94,7 +94,7 @@ AirglowShells::AirglowShells(const Airglow& airglow, const Band& band) {
   const double by_sun = airglow_by_solar_flux(airglow.solar_flux_sfu);
   const double s10 = by_sun * s10_of_mag_per_arcsec2(airglow.zenith_v_mag_per_arcsec2);
   const Spectrum spectrum = airglow_spectrum(by_sun);
-  // Of a whole in V, as `photons_per_s_m2_sr_of_s10` has it.
+  // The S10 are the whole spectrum's light in V, as `photons_per_s_m2_sr_of_s10` has it.
   const double in_v = photon_rate_per_m2(spectrum, johnson_v());
   const double photons = s10 * photons_per_s_m2_sr_of_s10(johnson_v(), spectrum) / in_v;
   const auto of = [&](bool oh) {

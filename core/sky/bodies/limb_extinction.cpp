@@ -14,7 +14,7 @@ namespace {
 
 constexpr double ray_step_m = 500.0;
 constexpr std::size_t ray_count = std::size_t(LimbExtinction::top_m / ray_step_m) + 1;
-constexpr double darkest_log = -700.0;  // of logarithms
+constexpr double darkest_log = -700.0;  // stands for no light
 
 }  // namespace
 

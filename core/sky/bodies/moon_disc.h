@@ -41,8 +41,8 @@ double moonlight_over_sunlight(const Vec<Gcrs>& moon_m, const Vec<Gcrs>& sun_m);
 /// That ratio in a band over that in V.
 double moonlight_colour(const Band& band);
 
-/// How far from the middle of a sphere's disc its light of that law lies, towards the Sun, in radii
-/// of the disc: 0 at phase angle 0, 1 at pi.
+/// How far from the middle of a sphere's disc its light of that law lies, towards the Sun, in the
+/// disc's radii: 0 at phase angle 0, 1 at pi.
 double lommel_seeliger_photocentre(double phase_rad);
 
 /// The radiance of a sphere of that law as seen from one place. All rays are taken as parallel to

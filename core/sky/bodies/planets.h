@@ -41,7 +41,7 @@ Vec<Gcrs> photocentre(Planet planet, const Vec<Gcrs>& direction, const Vec<Gcrs>
                       const Vec<Gcrs>& from_observer_m);
 
 /// V of a planet above the air for an observer near the Earth. `from_sun_m`, `from_observer_m`: to
-/// the planet. Of Saturn with its rings. Mars is as on the mean of its turn: 0.06 mag. Phase
+/// the planet. Saturn has its rings. Mars is as on the mean of its turn: 0.06 mag. Phase
 /// angles are held at the largest that the Earth sees of the outer planets.
 /// Source: Mallama & Hilton 2018, Astronomy and Computing 25, 10.
 double planet_v_mag(Planet planet, const Vec<Gcrs>& from_sun_m, const Vec<Gcrs>& from_observer_m,

@@ -14,7 +14,7 @@ namespace {
 
 // The cheap tests hold for any Sun from 0.98 au on and any object out to 2e8 m.
 constexpr double margin_m = 110e3;
-constexpr double max_bending = 0.021;  // of a ray along the ground
+constexpr double max_bending = 0.021;  // a ray along the ground is bent no more
 
 // A unit vector across `v` in the plane of `v` and `towards`; any across `v` when these are
 // parallel.

@@ -52,11 +52,11 @@ class EarthShadow {
   bool fully_lit(double along_m, double across_squared_m2) const;
   bool fully_dark(double along_m, double across_squared_m2) const;
 
-  // Of the penumbra's and umbra's edge: tan of the Sun's radius.
+  // Slope of the edges of penumbra and umbra: tan of the Sun's radius.
   static constexpr double cone_slope = 0.0048;
 
   Edge edge_ = Edge::sharp;
-  Band band_;  // of sunlight, but for the sharp edge
+  Band band_;  // that sunlight is seen in; the sharp edge needs none
   double dark_slope_ = cone_slope;
   Vec<Gcrs> sun_m_;
   Vec<Gcrs> towards_sun_;

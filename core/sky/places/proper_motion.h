@@ -24,7 +24,7 @@ class ProperMotion {
 
  private:
   Vec<Gcrs> barycentric_au_;
-  double years_;  // of the observer's time, Julian year
+  double years_;  // the observer's time as a Julian year
 };
 
 }  // namespace dmise

@@ -33,7 +33,7 @@ class SphereCells {
   struct Cell {
     std::uint32_t number = 0;
     double ra_rad = 0.0, width_rad = 0.0;     // its first right ascension, and its width
-    double low_sine = -1.0, high_sine = 1.0;  // of its declinations
+    double low_sine = -1.0, high_sine = 1.0;  // ends of its declinations
     Vec<Gcrs> middle;                         // unit
     double area_sr() const { return width_rad * (high_sine - low_sine); }
   };

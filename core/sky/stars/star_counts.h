@@ -11,8 +11,8 @@ namespace dmise {
 /// Soneira 1980, ApJS 44, 73, appendix B (V), which the counts of Tycho-2 join between V = 11 and
 /// 16; nearer to the plane, where it has no dust, log N rises evenly so far that the whole sky has
 /// the stars of Tycho-2 with UCAC4 to V = 16 and of USNO-B1.0 to V = 21 (within 30 and 20 %). By
-/// longitude: the fit's ratio to its mean, nearer to the plane that of 20 deg. There are no clouds
-/// of dust and no clusters: a degree of the Milky Way may have half or twice as many.
+/// longitude: the fit's ratio to its mean, nearer to the plane that of 20 deg. There are no dust
+/// clouds and no clusters: a degree of the Milky Way may have half or twice as many.
 class StarCounts {
  public:
   static constexpr double first_v_mag = 9.0, last_v_mag = 21.0;
@@ -27,8 +27,8 @@ class StarCounts {
   /// with stars drawn by `magnitude_of`.
   double light_s10(double from_v_mag, double to_v_mag) const;
 
-  /// The magnitude than which a `share` of the stars between two magnitudes, both within one step
-  /// of the table, are brighter.
+  /// The magnitude than which a `share` of the stars between two magnitudes are brighter. Both are
+  /// within one step of the table.
   double magnitude_of(double from_v_mag, double to_v_mag, double share) const;
 
  private:

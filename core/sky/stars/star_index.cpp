@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-/// Of 2 degrees: some 12 stars a cell with 126,000 stars.
+/// Bands are 2 degrees wide: some 12 stars a cell with 126,000 stars.
 constexpr int min_bands = 90;
 
 constexpr double first_limit = 9.0;
@@ -51,7 +51,7 @@ void reorder(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
 StarIndex build_star_index(StarCatalogue& c) {
   const std::size_t n = c.size();
   StarIndex index{.tiers = empty_tiers(tiers_for(c.v_mag))};
-  std::vector<std::size_t> cells_before{0};  // of the tiers, through all of them
+  std::vector<std::size_t> cells_before{0};  // in the tiers before each, then in all
   for (StarTier& tier : index.tiers) {
     tier.first_cell = first_cells(tier.bands);
     cells_before.push_back(cells_before.back() + tier.first_cell[std::size_t(tier.bands)]);

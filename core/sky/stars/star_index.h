@@ -25,7 +25,7 @@ struct StarTier {
 /// faint ones. The catalogue is sorted by tier, then by cell, then by magnitude.
 struct StarIndex {
   std::vector<StarTier> tiers;  // by rising magnitude; at least one
-  Column<Vec<Gcrs>> direction;  // of each star at the catalogue's epoch, unit
+  Column<Vec<Gcrs>> direction;  // for each star at the catalogue's epoch, unit
   double fastest_motion_rad_per_yr = 0.0;
 
   bool operator==(const StarIndex&) const = default;

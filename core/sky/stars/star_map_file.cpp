@@ -32,7 +32,7 @@ constexpr std::size_t alignment = 64;
 struct Header {
   std::array<char, 8> magic = dmise::magic;
   std::uint32_t version = star_map_version;
-  std::uint32_t crc = 0;  // of all before the columns, with 0 here
+  std::uint32_t crc = 0;  // over all before the columns, with 0 here
   std::uint32_t source_crc = 0;
   std::uint32_t tiers = 0;
   std::uint64_t source_bytes = 0;

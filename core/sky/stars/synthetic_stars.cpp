@@ -21,8 +21,8 @@ struct Tier {
 };
 constexpr std::array<Tier, 3> tiers = {Tier{14.0, 90}, Tier{17.0, 360}, Tier{25.0, 1440}};
 
-/// In wider fields stars are expected by the cells of bright stars alone: 1 % of the count, as more
-/// of them are cut by the field's edge.
+/// In wider fields stars are expected by the cells of bright stars alone: 1 % of the count, as the
+/// field's edge cuts more of them.
 constexpr double widest_fine_rad = 3.0 * deg;
 
 /// Seed of all synthetic skies, whatever the run's seed is.

@@ -62,7 +62,7 @@ Marked marked(const Field& field, double least, double most, const char* what) {
   constexpr std::size_t longest_mark = 4;  // ":", ")", "*N", "/N", a band
   const std::string_view mark = trimmed(text.substr(std::min(end, text.size())));
   if (!value) {
-    if (text == ":" || text == "-" || text == "+") return out;  // of a number that is not known
+    if (text == ":" || text == "-" || text == "+") return out;  // the number is not known
     throw Problem{field, std::string("must be ") + what + got(field.text)};
   }
   if (mark.size() > longest_mark)

@@ -11,7 +11,7 @@ struct VariableRecord {
   std::string name, type;
   double ra_rad = 0.0, dec_rad = 0.0;  // J2000.0
   std::optional<double> brightest_mag, depth_mag, second_depth_mag;
-  std::string band;                       // of the magnitudes; "V" is Johnson's
+  std::string band;                       // that the magnitudes are in; "V" is Johnson's
   std::optional<double> epoch_hjd;        // heliocentric Julian date
   std::optional<double> period_d;         // > 0
   std::optional<double> share_of_period;  // (0, 1): of the rise, or of an eclipse

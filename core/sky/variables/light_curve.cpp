@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 struct Harmonic {
-  double amplitude_mag, phase_rad;  // of cos(2 pi k x + phase)
+  double amplitude_mag, phase_rad;  // amplitude cos(2 pi k x + phase)
 };
 
 /// A pulsation by its Fourier series, with the places and values of its extremes.
@@ -56,9 +56,9 @@ double eclipse(double x) {
   return std::abs(x) < 1.0 ? std::pow(1.0 - std::pow(std::abs(x), 1.2), 1.5) : 0.0;
 }
 
-// Of stars that touch: PHOEBE's contact and semi-detached binaries are met to 0.025 mag.
-constexpr double half_of_touching = 0.11;  // of an eclipse, in periods
-constexpr double share_of_forms = 0.5;     // of the shallower eclipse, by the stars' forms
+// Stars that touch: PHOEBE's contact and semi-detached binaries are met to 0.025 mag.
+constexpr double half_of_touching = 0.11;  // half of an eclipse, in periods
+constexpr double share_of_forms = 0.5;     // share of the shallower eclipse by the stars' forms
 
 struct CurveOfType {
   std::string_view type;
@@ -105,7 +105,7 @@ LightCurveKind light_curve_kind(std::string_view type) {
 double StarLightCurve::phase(double hjd) const {
   const double periods = (hjd - epoch_hjd) / period_d;
   const double phase = periods - std::floor(periods);
-  return phase < 1.0 ? phase : 0.0;  // of a number just below 0
+  return phase < 1.0 ? phase : 0.0;  // 1 if rounded from just below 0
 }
 
 double StarLightCurve::fainter_by_mag(double phase) const {

@@ -28,8 +28,8 @@ struct StarLightCurve {
   LightCurveShape shape = LightCurveShape::constant;
   double brightest_v_mag = 0.0;
   double depth_mag = 0.0;         // from there to the faintest, >= 0; of eclipses: of the first
-  double second_depth_mag = 0.0;  // of the second eclipse, half a period later
-  double share = 0.0;             // of the period: (0, 1) the rise, (0, 0.5] an eclipse
+  double second_depth_mag = 0.0;  // depth in the second eclipse, half a period later
+  double share = 0.0;             // part of the period: (0, 1) the rise, (0, 0.5] an eclipse
   double epoch_hjd = 0.0;         // heliocentric Julian date (UTC) of a maximum; of an eclipse
   double period_d = 1.0;          // > 0
 

@@ -30,7 +30,7 @@ VariableTime variable_time(const Tt& tt, const Vec<Gcrs>& observer_from_sun_m);
 class VariableStars {
  public:
   struct Star {
-    std::uint32_t place = 0;  // of the catalogue's star
+    std::uint32_t place = 0;  // index of the star in the catalogue
     std::string name, type;
     StarLightCurve curve;  // `constant`: it is drawn with the catalogue's magnitude
     // V between which its light is, as a catalogue has it; the mean is over a period.
@@ -56,7 +56,7 @@ class VariableStars {
   /// The brightest that a star is drawn whose catalogue has `v_mag`.
   double brightest_v_mag(std::uint32_t place, double v_mag) const;
 
-  std::size_t records() const { return records_; }  // of the file, with a place
+  std::size_t records() const { return records_; }  // stars of the file that have a place
   /// The first line that could not be used; empty if there was none.
   const std::string& problem() const { return problem_; }
   std::size_t problems() const { return problems_; }
