@@ -98,7 +98,7 @@ class NodeInputs {
   std::uint64_t asked_again_ = 0;
   std::uint64_t asked_for_known_ = 0;
   int lose_every_ = 0;
-  std::uint64_t countdown_ = 0, lost_ = 0;  // until the next loss by `lose_every_`, and how many
+  std::uint64_t countdown_ = 0, lost_ = 0;  // counted for `lose_every_`, and lost by it
   std::uint64_t received_ = 0;
   std::uint64_t forged_said_ = 0;
 };
