@@ -21,7 +21,7 @@ struct SimulatedSequence {
 
   bool fixed = true;
   int frames = 8, stars = 60;
-  unsigned field = 7;  // of stars
+  unsigned field = 7;  // seed of the stars
   /// Changes the expected electrons of a frame.
   std::function<void(SimulatedFrame&, int frame)> add = [](SimulatedFrame&, int) {};
   /// Changes the counts of a frame.

@@ -16,7 +16,7 @@ namespace dmise {
 struct OrbitWatcher {
   std::string name;
   Site site;
-  double sigma_rad = 0.0;  // of a direction, along each axis
+  double sigma_rad = 0.0;  // error of a direction, along each axis
   double limiting_magnitude = 0.0;
   double cadence_s = 30.0;
   double min_elevation_rad = 0.0;
