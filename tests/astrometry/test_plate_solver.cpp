@@ -130,7 +130,7 @@ TEST(PlateSolver, FindsTheDistortionOfALens) {
   EXPECT_NEAR(blind.fit.rms_px, sigma_px * std::sqrt(2.0), 0.02);
 }
 
-// The same NEES as of the fit alone, by the whole search: unknowns are chosen by the stars.
+// The whole search has the NEES of the fit alone, too: unknowns are chosen by the stars.
 TEST(PlateSolver, TellsItsErrors) {
   const PlateSky sky = test::sky_of(test::kstars());
   double sum = 0.0;

@@ -32,7 +32,7 @@ std::string error_of(const std::string& bytes, const FrameChoice& choice = {}) {
   return "no error";
 }
 
-/// The same objects, with places and light within some of the errors of the fit.
+/// Both have the same objects, with places and light within some of the errors of the fit.
 void expect_same(const std::vector<Detection>& got, const std::vector<Detection>& expected,
                  double sigmas) {
   ASSERT_EQ(got.size(), expected.size());

@@ -64,7 +64,7 @@ struct SimulatedSequence {
   }
 
  private:
-  /// The same stars of the sky in each frame, also beside the frame in the middle.
+  /// Each frame has the same stars of the sky, also beside the frame in the middle.
   void add_stars(SimulatedFrame& frame) const {
     SimulatedFrame places(frame.header(), 1, 1, 0, field);  // for its random numbers
     const Wcs middle = header(frames / 2).wcs;

@@ -27,7 +27,7 @@ struct OrbitWatcher {
 /// telescopes of 0.4 m, one in either hemisphere: three exposures of a pass at 1 arcsec, as a task
 /// of the fusion node. Sites from 78 N to 44 S.
 std::vector<OrbitWatcher> wide_network();
-/// The same cameras at the eight sites of launch/scenarios/survey.yaml, 40 N to 32 S.
+/// Such cameras at the eight sites of launch/scenarios/survey.yaml, 40 N to 32 S.
 std::vector<OrbitWatcher> survey_network();
 
 /// What watchers detect of one object on a given path, without pixels: directions with errors while
