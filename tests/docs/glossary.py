@@ -75,7 +75,7 @@ def faults_of_comments():
     """Comments without a subject."""
     for folder in (*CODE, "bench", "tests"):
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".h", ".cpp", ".ts") and "node_modules" not in str(path):
+            if path.suffix in (".h", ".cpp", ".proto", ".ts") and "node_modules" not in str(path):
                 lines = path.read_text().splitlines()
                 for number, (before, line) in enumerate(zip(["", *lines], lines), 1):
                     if not has_subject(line, before):
