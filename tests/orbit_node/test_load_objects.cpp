@@ -42,7 +42,7 @@ TEST_F(ObjectPopulationTest, CataloguesComeFirstThenElementsThenTheOtherModels) 
   EXPECT_EQ(p.roster.objects[0].name, "GOES 13");
   EXPECT_EQ(p.roster.objects[1].name, "own");
   EXPECT_EQ(p.roster.objects[1].catalogue_number, 29156u);
-  EXPECT_NEAR(p.roster.objects[1].element_age_s / 3600, 5.77, 0.01);  // their epoch is day 20.770
+  EXPECT_NEAR(p.roster.objects[1].element_age_s / 3600, 5.77, 0.01);  // its epoch is day 20.770
   EXPECT_EQ(p.roster.objects[2].name, "mast");
   EXPECT_EQ(p.roster.objects[2].catalogue_number, first_own_number);
   ASSERT_TRUE(p.roster.objects[2].panel);
