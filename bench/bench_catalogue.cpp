@@ -24,9 +24,9 @@ namespace {
 constexpr double day_s = 86400.0, grid_s = 30.0;
 constexpr double albedo = 0.3;
 constexpr double found_within_s = 12 * 3600.0;
-constexpr double min_m_per_s = 0.02;         // of manoeuvres that are to be found
+constexpr double min_m_per_s = 0.02;         // smaller manoeuvres need not be found
 constexpr double min_normal_m_per_s = 0.15;  // that element sets of three days show
-constexpr double same_s = 3 * 3600.0;        // of a manoeuvre that is found, from its time
+constexpr double same_s = 3 * 3600.0;        // how far from its time a manoeuvre may be found
 
 /// A satellite whose days from `start` have a precise orbit.
 struct Days {

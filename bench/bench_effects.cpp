@@ -29,7 +29,7 @@ struct Options {
 };
 Options options;
 
-constexpr double share_that_counts = 0.1;  // of a budget: a looser bound of less costs nothing
+constexpr double share_that_counts = 0.1;  // part of a budget: a looser bound of less costs nothing
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;

@@ -28,7 +28,7 @@ Options options;
 
 constexpr int max_tries = 5;
 constexpr int pilot_sensors = 8, pilot_frames = 3;
-constexpr double share_at_first = 0.96;  // of the processors' time, for the first try
+constexpr double share_at_first = 0.96;  // part of the processors' time that the first try fills
 constexpr double share_detecting = 0.9;
 // Factors between tries; with detection frames are long compared to the ticks of their deadline.
 constexpr double step = 0.95, step_detecting = 0.87;
@@ -61,7 +61,7 @@ NetworkRun measure(const NetworkCase& network, const std::filesystem::path& dire
 
 struct Kept {
   int sensors = 0;  // largest number that kept up; 0: none
-  NetworkRun run;   // of that number, or the last one
+  NetworkRun run;   // with that number, or the last one
 };
 
 /// The largest number, from `sensors` down, that keeps up; none needs more than `share`.

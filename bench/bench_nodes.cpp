@@ -72,7 +72,7 @@ dmise.serve(Circles)
 
 struct NodesCase {
   int nodes = 1;
-  int objects = 1;  // of each node
+  int objects = 1;  // for each node
   Tick ticks = 0;
   bool python = true;  // else nodes that do nothing join
 };

@@ -154,7 +154,7 @@ struct TickFigure {
   std::string unit;
   std::string anchor;
   double anchor_value = 0.0;
-  double target = 0.0;  // of value / anchor_value; 0: none
+  double target = 0.0;  // for value / anchor_value; 0: none
 };
 
 void print(const TickFigure& figure, bool json) {

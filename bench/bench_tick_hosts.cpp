@@ -19,7 +19,7 @@ constexpr int host_repeats = 3;
 struct Cost {
   double messages = 0.0;   // received by the master per tick
   double master_us = 0.0;  // processor time per tick
-  double agent_us = 0.0;   // of one agent, per node and tick
+  double agent_us = 0.0;   // one agent's, per node and tick
   double ticks_per_s = 0.0;
 };
 

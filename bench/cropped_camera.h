@@ -12,7 +12,7 @@ struct CroppedCamera {
   std::string yaml;  // the mapping, in one line
   double pixel_rad = 0.0, fwhm_px = 0.0;
   double read_noise_e = 0.0, dark_e_per_s = 0.0;
-  double zero_e_per_s = 0.0;  // of a star of V = 0, about
+  double zero_e_per_s = 0.0;  // a star of V = 0, about
   bool diffraction = false;
 };
 

@@ -15,7 +15,7 @@ using simulated::SimulatedFrame;
 
 constexpr double sky_e = 1500.0, focal_px = 1663.0;
 constexpr double faintest_star_snr = 1.0;
-constexpr double place_error_px = 0.1, light_error = 0.1;  // of the catalogue's stars in a frame
+constexpr double place_error_px = 0.1, light_error = 0.1;  // errors of the catalogue in a frame
 constexpr double star_free_noise = 0.3;  // stars' light in a pixel's noise up to which it is theirs
 
 double noise_variance_e2(const FrameHeader& h) {

@@ -22,7 +22,7 @@ struct StarField {
 struct DetectionOutcome {
   int placed = 0, found = 0;
   double in_theory = 0.0;                     // that an ideal template finds, summed
-  double squares_px2 = 0.0, bound_px2 = 0.0;  // of errors, and of the Cramer-Rao bound
+  double squares_px2 = 0.0, bound_px2 = 0.0;  // errors, and the Cramer-Rao bound
   double nees = 0.0, bias_sigma = 0.0;        // sums over those found
 
   void add(const DetectionOutcome& other);

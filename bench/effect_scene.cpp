@@ -19,7 +19,7 @@ constexpr int side_px = 256;
 constexpr double longest_trail_px = 300.0;
 constexpr double sky_turns_rad_per_s = 7.292e-5;
 constexpr double fastest_object_m_per_s = 12e3;
-constexpr double usual_size_m = 10.0;  // of the model of a satellite with wings
+constexpr double usual_size_m = 10.0;  // size of the model of a satellite with wings
 
 template <class... Parts>
 std::string text_of(const Parts&... parts) {
@@ -39,7 +39,7 @@ struct Frame {
   SceneDice dice;
   bool on_ground, tracks_object;
   CroppedCamera camera;
-  double trail_px;  // of stars, on the ground, or of those behind a tracked object
+  double trail_px;  // trail of stars, on the ground, or of those behind a tracked object
   double exposure_s, tick_s, duration_s;
   std::string start, place, pointing, sky, rest;
 

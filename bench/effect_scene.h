@@ -9,7 +9,7 @@ namespace dmise {
 /// A scene that was drawn at random: its scenario and star catalogue are files.
 struct EffectScene {
   int number = 0;
-  std::string path;  // of the scenario
+  std::string path;  // where the scenario is
   std::string what;  // one line
 };
 

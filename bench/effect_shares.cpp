@@ -34,7 +34,7 @@ void add_places(const View& view, const StarTable& stars, std::size_t places, Ef
   const EffectSet& all = view.sensor().effects;
   const double whole_s = seconds_with(all);
   PlaceEffects::for_each([&]<class Effect>() {
-    if (!all.has(Effect::facts) || std::is_same_v<Effect, LightTime>) return;  // of objects
+    if (!all.has(Effect::facts) || std::is_same_v<Effect, LightTime>) return;  // objects only
     EffectSet others = all;
     others.set(Effect::facts, false);
     times[Effect::facts] =

@@ -10,7 +10,7 @@ struct Figure {
   std::string unit;
   std::string anchor;  // comparison measured in the same run
   double anchor_value = 0.0;
-  double target = 0.0;  // of `value`
+  double target = 0.0;  // that `value` should reach
   bool less_is_better = false;
 };
 

@@ -21,12 +21,12 @@ inline constexpr double network_cadence_s = 20.0;
 
 struct NetworkRun {
   bool complete = false;
-  std::string reason;  // of a failure
+  std::string reason;  // why it failed
   long overruns = 0;   // ticks not done when the next was due
   double worst_lag_s = 0.0;
   double start_s = 0.0;                    // from launch to start
   double wall_s = 0.0;                     // from start to end
-  double cpu_s = 0.0;                      // of all processes in that time
+  double cpu_s = 0.0;                      // all processes in that time
   std::map<std::string, double> cpu_of_s;  // by program, all sensors together
   int frames = 0;                          // by all sensors
   double peak_pss_mb = 0.0;                // largest observed sum over all processes

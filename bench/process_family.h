@@ -14,7 +14,7 @@ struct ProcessUse {
   double peak_pss_mb = 0.0;  // largest observed
   double max_pss_mb = 0.0;   // upper bound: the peak of its resident set minus
                              // currently shared memory
-  double cpu_s = 0.0;        // of all threads
+  double cpu_s = 0.0;        // processor time of all threads
 };
 
 /// A process and its children, observed from outside. Reading the memory of a hundred takes about

@@ -259,7 +259,7 @@ def as_json(report):
 
 
 def worst(found):
-    """Of several figures that one row stands for."""
+    """The largest of several figures that one row stands for."""
     return max(found, key=lambda m: abs(m["value"])) if found else None
 
 

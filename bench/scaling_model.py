@@ -13,31 +13,31 @@ import heapq
 @dataclasses.dataclass(frozen=True)
 class Costs:
     """Processor time [s] and bytes of a tick."""
-    master_s: float              # of the time-master
-    master_per_node_s: float     # and of each node that reports to it
-    broker_s: float              # of the broker
-    broker_per_node_s: float     # and of each sensor node, with states that are empty
+    master_s: float              # what the time-master takes
+    master_per_node_s: float     # and for each node that reports to it
+    broker_s: float              # what the broker takes
+    broker_per_node_s: float     # and for each sensor node, with states that are empty
     orbit_s: float
     sensor_s: float
     node_bytes: float            # all that a sensor node and the others exchange, states empty
     state_bytes: float = 0.0     # the states, once
-    copy_s: float = 0.0          # of the broker for each subscriber's copy of the states
-    publish_s: float = 0.0       # of the orbit node for the states
-    take_in_s: float = 0.0       # of a sensor node for the states
+    copy_s: float = 0.0          # the broker, for each subscriber's copy of the states
+    publish_s: float = 0.0       # the orbit node, for the states
+    take_in_s: float = 0.0       # a sensor node, for the states
 
 
 @dataclasses.dataclass(frozen=True)
 class Network:
     sensors: int
-    hosts: int = 1               # of sensors; with more than one, master, broker and orbit node have their own
+    hosts: int = 1               # for sensors; with more than one, master, broker and orbit node have their own
     cores: int = 2
     agents: bool = False         # one a host: reports for its sensors, and takes one copy of the states
-    bits_per_s: float = 10e9     # of each host's link
+    bits_per_s: float = 10e9     # speed of each host's link
     delay_s: float = 50e-6       # from host to host
     window_ticks: int = 4
     tick_s: float = 0.0          # real time; 0: as fast as possible
     frame_s: float = 0.0         # processor time of a frame,
-    frame_ticks: int = 4         # of which each sensor makes one in so many ticks, in turn
+    frame_ticks: int = 4         # and each sensor makes one in so many ticks, in turn
 
 
 @dataclasses.dataclass
@@ -46,7 +46,7 @@ class Outcome:
     master_s: float              # processor time a tick
     broker_s: float
     broker_out_bytes: float      # a tick, over the link of the broker's host
-    worst_lag_s: float           # of ticks not over when the next was due
+    worst_lag_s: float           # among ticks not over when the next was due
     overruns: int
 
 

@@ -38,7 +38,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   add_commands(app);
   want_decimal_numbers(app);
-  constexpr std::size_t longest = 4000;  // of an error message [bytes]
+  constexpr std::size_t longest = 4000;  // length of an error message [bytes]
   try {
     app.parse(argc, argv);
     return 0;

@@ -58,11 +58,11 @@ class Coordinator {
     std::uint64_t incarnation = 1;  // number of processes of the name
     Tick done = -1;
     Tick resumes_at = 0;              // first tick of this process
-    Tick closed_from = 0;             // of a dropped node: first tick without its topics
-    std::deque<TickTally> manifests;  // of ticks that not all have done
+    Tick closed_from = 0;             // if dropped: first tick without its topics
+    std::deque<TickTally> manifests;  // ticks that not all have done
     Pulse pulse;
     Instant silent_since{0};
-    std::vector<std::string> waits_for;  // of an agent: its nodes that it waits for
+    std::vector<std::string> waits_for;  // nodes of an agent that hold up the run
 
     bool active() const { return !left; }
     /// Whether it may join, leave and fall silent without consequences for the run.
@@ -198,7 +198,7 @@ class Coordinator {
   std::map<std::string, Member> members_;
   std::map<std::string, Member> behind_;
   std::set<std::string> silent_behind_;
-  std::map<std::string, std::uint64_t> incarnations_;  // of each name
+  std::map<std::string, std::uint64_t> incarnations_;  // latest incarnation of each name
   std::map<std::string, Tick> history_;
   std::vector<std::string> forgotten_;
   Phase phase_ = Phase::gathering;
@@ -210,7 +210,7 @@ class Coordinator {
   std::uint64_t digest_ = 0;
   Instant started_;
   std::optional<Instant> next_check_;
-  Instant next_look_{0};  // of find_stalled
+  Instant next_look_{0};  // when `find_stalled` looks again
 };
 
 }  // namespace dmise

@@ -184,7 +184,7 @@ bool Coordinator::begin_without_missing(Instant now) {
     members_[name] = std::move(member);
   }
   first_dropped_ = names.front();
-  started_ = now;  // of those who are left
+  started_ = now;  // those who are left have the full time again
   connect_if_complete(now);
   return true;
 }

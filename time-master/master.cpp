@@ -31,8 +31,8 @@ constexpr milliseconds farewell{1500};  // longest wait for nodes to leave after
 
 constexpr milliseconds longest_unheard{250};  // between a connection's end and its last messages
 constexpr milliseconds guard_interval{20};    // between checks of connection limits
-constexpr int max_control_messages = 1000;    // of one connection, waiting to be read
-constexpr int max_waiting_subscriptions = 8;  // of one connection; others wait at the peer, so
+constexpr int max_control_messages = 1000;    // waiting to be read, per connection
+constexpr int max_waiting_subscriptions = 8;  // on one connection; others wait at the peer, so
                                               // that little is queued between two checks
 
 CoordinatorOptions with_broker(const MasterOptions& options) {

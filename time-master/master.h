@@ -10,11 +10,11 @@
 namespace dmise {
 
 struct MasterOptions {
-  std::string address = "tcp://127.0.0.1:0";  // of the socket that all processes connect to
+  std::string address = "tcp://127.0.0.1:0";  // where all processes connect
   CoordinatorOptions run;  // `expected`: nodes that the clock waits for, without the broker
   bool with_broker = true;
   SimTime tick_length{1'000'000'000};
-  std::string start_utc;        // of tick 0 (ISO 8601), for status; may be empty
+  std::string start_utc;        // when tick 0 is (ISO 8601), for status; may be empty
   std::string scenario_digest;  // for those who join; may be empty
   std::string keys;             // directory of keys; empty: no encryption, loopback only
   Event* stop = nullptr;

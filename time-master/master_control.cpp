@@ -15,8 +15,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t max_unasked_bytes = 4096;       // of a guest's messages
-constexpr std::size_t max_observed_bytes = 64 << 10;  // of the topics of one observer
+constexpr std::size_t max_unasked_bytes = 4096;       // messages of a guest
+constexpr std::size_t max_observed_bytes = 64 << 10;  // topics of one observer
 
 }  // namespace
 

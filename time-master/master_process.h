@@ -83,7 +83,7 @@ class MasterProcess {
   Security security_;
   ZapAuthenticator authenticator_;
   zmq::socket_t router_, ticks_;
-  PeerMonitor connections_, listeners_;  // of the two
+  PeerMonitor connections_, listeners_;  // who is connected to `router_`, and to `ticks_`
   std::vector<std::uint64_t> broken_;    // whose last messages may not have been handled
   Instant broken_since_{0};
   std::uint64_t run_id_;

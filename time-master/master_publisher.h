@@ -68,7 +68,7 @@ class MasterPublisher {
   v1::Grant fresh_;
   std::map<std::string, v1::Grant> fresh_for_;
   std::set<std::string, std::less<>> consumed_;             // topics with consumers
-  std::map<std::string, std::vector<std::string>> narrow_;  // of these, with few: their names
+  std::map<std::string, std::vector<std::string>> narrow_;  // few consumers: their names
   std::uint64_t topology_version_ = 0;                      // as last sent
   Phase phase_ = Phase::gathering;
   Tick granted_ = -1;

@@ -18,14 +18,14 @@ struct MasterResult {
   std::string reason;                      // first cause of a code other than 0
   Tick granted = -1;                       // last tick granted
   double wall_s = 0.0;                     // from the first grant to the end
-  std::map<std::string, TimeSplit> times;  // of each process, as last reported
+  std::map<std::string, TimeSplit> times;  // by process, as last reported
   std::vector<std::string> dropped;        // nodes that the run continued without
   std::map<std::string, int> restarts;     // number of restarts, if any
-  std::uint64_t digest = 0;                // of everything published; the same for the same run
+  std::uint64_t digest = 0;                // everything published; the same for the same run
   std::uint64_t overruns = 0;              // ticks not done when the next was due in real time
   double worst_lag_s = 0.0;
   std::uint64_t messages = 0;                  // received from the first grant to the end
-  double cpu_s = 0.0;                          // of the master's whole process in that time
+  double cpu_s = 0.0;                          // master's whole process in that time
   std::vector<TickRecord> ticks;               // the latest
   std::map<std::string, double> waited_for_s;  // in which the clock waited for a node
 };

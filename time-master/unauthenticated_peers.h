@@ -15,7 +15,7 @@ struct StrangerLimits {
   std::size_t messages_of_a_peer = 8;  // queued
   std::size_t messages = 4096;         // queued, of all peers
   std::size_t bytes = 16 << 20;        // queued, of all peers
-  RateLimit rate;                      // of each peer
+  RateLimit rate;                      // for each peer
 };
 
 /// Queue of messages of processes that the clock does not wait for: peers take turns, each at a

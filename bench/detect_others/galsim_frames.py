@@ -17,9 +17,9 @@ MOUNTS = ("sidereal", "target", "rest")
 READ_E, FULL_E, BIAS_DN = 7.0, 50000.0, 200.0
 PHASES = 6  # places within a pixel, of either axis, at which GalSim draws
 EDGE_PX = 40  # objects keep so far from the frame's edge
-SLOPE = 0.45  # of the logarithm of star counts, per magnitude
+SLOPE = 0.45  # growth of the logarithm of star counts, per magnitude
 FAINTER_MAG = 2.5  # stars are drawn to so far below SNR 6
-BAYER_SHARES = ((0.55, 0.9), (0.9, 0.5))  # of the light that colours pass: red, green; green, blue
+BAYER_SHARES = ((0.55, 0.9), (0.9, 0.5))  # parts of the light that colours pass: red, green; green, blue
 PRECISE = galsim.GSParams(maximum_fft_size=16384)
 
 
@@ -49,7 +49,7 @@ class Object:
     y_px: float
     length_px: float  # 0: a point
     angle_rad: float
-    snr: float  # of the ideal filter in the noise of sky, stars and read-out
+    snr: float  # after the ideal filter, in the noise of sky, stars and read-out
 
     def distance_px(self, x, y):
         """From its line, of places in arrays."""

@@ -35,7 +35,7 @@ constexpr int window_ticks = 4;
 constexpr int max_sensors = 200;
 constexpr std::size_t catalogue_objects = 18470;
 constexpr double paced_ticks_per_s = 4.0;    // mostly the cost of heartbeats
-constexpr double target_ticks_per_s = 25.0;  // of the most sensors, with 18,470 objects
+constexpr double target_ticks_per_s = 25.0;  // wanted for the most sensors, with 18,470 objects
 constexpr Tick warm_up = 8;                  // ticks before the first reading
 
 struct {

@@ -17,7 +17,7 @@ namespace dmise {
 namespace {
 
 std::int64_t loopback_bytes() {
-  std::ifstream devices("/proc/self/net/dev");  // of the thread's own namespace
+  std::ifstream devices("/proc/self/net/dev");  // only devices of the thread's own namespace
   std::string word;
   std::int64_t bytes = 0;
   while (devices >> word)

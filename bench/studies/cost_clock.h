@@ -11,7 +11,7 @@ namespace dmise {
 struct CostReading {
   double wall_s = 0.0;
   std::int64_t loopback_bytes = 0;  // received by the loopback device of this network namespace
-  std::vector<double> cpu_s;        // of each process, all threads; 0 if it has ended
+  std::vector<double> cpu_s;        // by process, all threads; 0 if it has ended
 };
 
 CostReading read_costs(const std::vector<pid_t>& processes);

@@ -210,7 +210,7 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
                                   without_noise(bands[1], threads)};
   for (std::size_t o = 0; o < 2; ++o) {
     SeedStudy& s = studies[o];
-    double share[2];  // of the sunlight
+    double share[2];  // light over full sunlight, by band
     for (std::size_t b = 0; b < 2; ++b)
       share[b] =
           light_of(quiet[b], bands[b].places.at(s.object), aperture) /

@@ -12,7 +12,7 @@ struct SeedStudy {
   std::string object, material;
   double truth = 0.0;  // ratio of the material's reflectances
   std::size_t seeds = 0;
-  double mean = 0.0, scatter = 0.0;  // of the ratio
+  double mean = 0.0, scatter = 0.0;  // ratio as measured
   double without_noise = 0.0;        // the ratio of the expected light of both bands
   double theory = 0.0;               // its standard deviation by the expected noise of every pixel
   double z_width = 0.0;              // standard deviation of (ratio - truth) over its stated error
@@ -25,7 +25,7 @@ struct SeedStudy {
 /// What is exposed of the frame for each seed.
 enum class Exposed {
   window,  // 256 x 768 pixels about both objects
-  pieces,  // of 48 x 48 pixels about each object: the same chain, 40 times as fast
+  pieces,  // 48 x 48 pixels about each object: the same chain, 40 times as fast
 };
 
 /// Exposes pixels of `launch/scenarios/paper/space-imager.yaml` with the seeds from 1 on, and

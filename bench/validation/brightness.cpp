@@ -17,13 +17,13 @@
 namespace dmise {
 namespace {
 
-constexpr double bin_s = 1.0;               // of means within a track
-constexpr std::uint64_t seed = 1;           // of glints
+constexpr double bin_s = 1.0;               // length of a mean within a track
+constexpr std::uint64_t seed = 1;           // draws the glints
 constexpr std::size_t least_of_a_half = 3;  // as many as a phase law has numbers
 
 struct Family {
   const char *model, *what, *file, *source;
-  double inclination_deg = 0.0, height_m = 0.0;  // of light curves
+  double inclination_deg = 0.0, height_m = 0.0;  // orbit of the satellite, for light curves
   Halves halves = Halves::by_track;
   double target_median_mag = 0.2, target_scatter_mag = 0.0;
 };

@@ -29,9 +29,9 @@ enum class Halves { by_time, by_track };
 /// What is measured of one half.
 struct BrightnessFigures {
   std::size_t lights = 0, tracks = 0;
-  double median_mag = 0.0, mean_mag = 0.0;  // of the differences
+  double median_mag = 0.0, mean_mag = 0.0;  // differences of all lights
   double scatter_mag = 0.0;                 // their standard deviation
-  double phase_law_scatter_mag = 0.0;       // of what a phase law leaves, fitted to the fitted half
+  double phase_law_scatter_mag = 0.0;       // left by a phase law that is fitted to the fitted half
   double track_scatter_mag = 0.0;           // standard deviation of the tracks' median differences
   // Median over tracks of the standard deviation within them of means over a second.
   double within_measured_mag = 0.0, within_predicted_mag = 0.0, within_difference_mag = 0.0;
@@ -41,10 +41,10 @@ struct FamilyBrightness {
   std::string model, what, source;
   std::string split;  // in words
   std::size_t left_out = 0;
-  double worst_rms_m = 0.0;  // of a pass: stated ranges about its orbit
+  double worst_rms_m = 0.0;  // greatest rms in a pass: stated ranges about its orbit
   std::vector<ComparedLight> lights;
   BrightnessFigures fitted, held_out;
-  CurvePower fitted_power, held_out_power;                   // of light curves
+  CurvePower fitted_power, held_out_power;                   // power in light curves
   double target_median_mag = 0.0, target_scatter_mag = 0.0;  // 0: 1.2 times the phase law's
 };
 

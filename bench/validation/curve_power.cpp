@@ -17,7 +17,7 @@ namespace {
 constexpr double step_s = 0.1, widest_gap_s = 1.05, min_length_s = 16.0;
 constexpr double fastest_hz = 0.5, white_above_hz = 1.0;
 constexpr std::array<double, 6> edges_s{2, 4, 8, 16, 32, 64};
-constexpr double part_of_band = 1.2;  // of a band's shortest period, that a track must last
+constexpr double part_of_band = 1.2;  // shortest periods of a band that a track must last
 
 /// Power density of a series of even steps about its straight line, tapered by Hann's window.
 struct Periodogram {
@@ -78,7 +78,7 @@ double mean_density(const Periodogram& p, double min_hz, double max_hz, double w
 
 /// The longest run of a curve in even steps.
 struct SteadyRun {
-  std::vector<double> time_s;  // of the steps
+  std::vector<double> time_s;  // when the steps are
   double seconds() const { return double(time_s.size()) * step_s; }
 };
 

@@ -53,7 +53,7 @@ DayAir clear_air() {
 
 SkyTable day_of_standards() {
   struct Plane {
-    double sun_deg, share;  // of the Sun's illuminance, on a horizontal plane
+    double sun_deg, share;  // skylight over the Sun's illuminance, on a horizontal plane
   };
   // tests/reference/diffuse_sky.py, pvlib 0.16.1.
   constexpr Plane planes[] = {

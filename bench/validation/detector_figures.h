@@ -37,17 +37,17 @@ struct DistanceRow {
   std::size_t truths = 0, found = 0;
 };
 
-/// Of one sensor of the drawn frames.
+/// What is found in the drawn frames of one sensor.
 struct DetectorFigures {
   std::string sensor;
   std::size_t frames = 0;
   std::vector<SnrRow> rows;  // that have truths
   SnrRow all;
-  std::vector<DistanceRow> by_star_px;  // of points
+  std::vector<DistanceRow> by_star_px;  // points only
   double false_alarms_a_frame = 0.0;
   double across_arcsec = 0.0, along_arcsec = 0.0;  // rms, of clean detections
   SimsitFigures simsit;
-  double sigma_found = 0.0;  // of the number found, if the model is right
+  double sigma_found = 0.0;  // scatter of the number found, if the model is right
   double deviation_sigma() const;
 };
 

@@ -25,7 +25,7 @@ namespace {
 constexpr int side = 4;  // objects along an edge of the frame
 constexpr double jitter_px = 60.0;
 constexpr double min_snr = 3.0, max_snr = 100.0;
-constexpr double near_m = 800e3, far_m = 4000e3;  // of streaks
+constexpr double near_m = 800e3, far_m = 4000e3;  // ranges of streaks
 constexpr double geo_range_m = 37500e3;
 constexpr double earth_rate_rad_per_s = 7.292115e-5;
 

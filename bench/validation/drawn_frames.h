@@ -14,7 +14,7 @@ namespace dmise {
 struct ScoredDraws {
   using Name = std::pair<std::string, std::string>;  // frame, and the truth's id
   Score score;
-  std::map<Name, double> probability;  // of detection by the model of `dmise survey`
+  std::map<Name, double> probability;  // that the model of `dmise survey` gives
   std::map<Name, double> star_px;      // from a point to the nearest trail that stands out
   double expected(const TrueSource& truth) const;
 };

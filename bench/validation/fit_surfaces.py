@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 SUN_V_MAG = -26.76
-AB_LESS_V_MAG = -0.02  # of sunlight in V; the scale by the median takes up what is left
+AB_LESS_V_MAG = -0.02  # colour of sunlight in V; the scale by the median takes up what is left
 DARK = 0.004
 SIDES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "-z": (0, 0, -1)}
 

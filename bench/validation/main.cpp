@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t drawn_frames = 60;  // of each sensor
+constexpr std::size_t drawn_frames = 60;  // frames of each sensor
 constexpr std::uint64_t drawn_seed = 1;
 
 struct Options {

@@ -109,7 +109,7 @@ SkyTable moonlit_sky() {
 
 SkyTable twilight_colours() {
   struct Polynomial {
-    std::array<double, 3> mag;  // of the depression less 5 deg
+    std::array<double, 3> mag;  // coefficients, by powers of the depression less 5 deg
     double night_mag;           // Patat 2003, which is in the measured light
   };
   constexpr Polynomial polynomials[] = {{{11.78, 1.376, -0.039}, 22.28},

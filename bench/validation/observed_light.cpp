@@ -26,7 +26,7 @@ namespace {
 constexpr Site mount_lemmon{.latitude_deg = 32.4434, .longitude_deg = -110.7881, .height_m = 2790};
 constexpr Site mmt_9{.latitude_deg = 43.65, .longitude_deg = 41.43, .height_m = 2030};
 constexpr std::size_t points_of_fit = 15;
-constexpr double min_km = 100.0, max_km = 1e5;  // of heights and ranges
+constexpr double min_km = 100.0, max_km = 1e5;  // bounds of heights and ranges
 constexpr double brightest_mag = -10.0, faintest_mag = 25.0;
 
 /// Rows of a CSV with a header; lines that begin with # are comments.

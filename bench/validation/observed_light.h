@@ -11,7 +11,7 @@ namespace dmise {
 
 /// A measured brightness of a satellite, and where all were.
 struct ObservedLight {
-  std::size_t track = 0;      // of its set, in order of time
+  std::size_t track = 0;      // index within its set, in order of time
   std::uint32_t object = 0;   // satellite, by a number of its set; 0: not told
   double measured_mag = 0.0;  // above the atmosphere, in the system of its set
   AttitudeScene scene;        // seconds of the set; satellite and Sun
@@ -26,7 +26,7 @@ struct ObservedSet {
   std::vector<ObservedLight> lights;
   std::size_t tracks = 0;
   std::size_t left_out = 0;  // lights in penumbra, and of passes whose orbit is not found
-  double worst_rms_m = 0.0;  // of a pass: ranges about its orbit
+  double worst_rms_m = 0.0;  // greatest rms in a pass: ranges about its orbit
 };
 
 /// Magnitudes of single exposures with height, elevation and azimuth, as those of Starlink by

@@ -18,9 +18,9 @@ struct RangePhase {
 /// A pass on a circular orbit, in the axes of date.
 struct CircularPass {
   double inclination_rad = 0.0;
-  double raan_rad = 0.0, argument_rad = 0.0;  // of latitude at time 0
+  double raan_rad = 0.0, argument_rad = 0.0;  // argument of latitude at time 0
   double radius_m = 0.0;
-  double rms_m = 0.0;  // of the ranges that it was fitted to
+  double rms_m = 0.0;  // misfit of the ranges that it was fitted to
 
   MotionState<Cirs> at(double time_s) const;
 };

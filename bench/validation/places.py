@@ -30,7 +30,7 @@ ARCSEC = np.radians(1 / 3600)
 SATELLITES = {"sentinel3a": "Sentinel-3A", "jason1": "Jason-1"}
 SITES = [(lat, lon) for lat in (-50.0, -35.0, -20.0, 20.0, 35.0, 50.0) for lon in range(-180, 180, 30)]
 PASS_S, CADENCE_S = 160, 2
-PASSES = 2  # of each satellite
+PASSES = 2  # passes of each satellite
 HEIGHT_M = 500.0
 
 

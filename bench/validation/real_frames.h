@@ -10,11 +10,11 @@ namespace dmise {
 
 /// What `dmise check` predicts of a frame, by the published facts of its camera. Magnitudes are AB.
 struct PredictedFrame {
-  double zero_point_mag = 0.0;                // of 1 e-/s, behind the air
+  double zero_point_mag = 0.0;                // yields 1 e-/s, behind the air
   double sky_e = 0.0;                         // sky and dark current of a pixel
-  double twilight_e = 0.0;                    // of it
-  double noise_e = 0.0;                       // of a pixel
-  double limit_mag = 0.0;                     // of a point, above the air
+  double twilight_e = 0.0;                    // sky light by twilight
+  double noise_e = 0.0;                       // noise of a pixel
+  double limit_mag = 0.0;                     // magnitude of a point, above the air
   double sun_deg = 0.0, boresight_deg = 0.0;  // elevations
 };
 

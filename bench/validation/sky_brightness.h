@@ -23,12 +23,12 @@ struct SkyTable {
   std::string rows_are;
   std::vector<std::string> columns;
   std::vector<SkyRow> rows;
-  double target_mag = 0.0;  // of the worst difference; 0: none is asked for
+  double target_mag = 0.0;  // greatest allowed difference; 0: none is asked for
 };
 
 struct SkyFigures {
   std::size_t cells = 0;
-  double median_mag = 0.0, scatter_mag = 0.0;  // of the differences
+  double median_mag = 0.0, scatter_mag = 0.0;  // differences of all cells
   double worst_mag = 0.0;                      // the largest, without sign
 };
 

@@ -26,10 +26,10 @@ namespace dmise {
 
 /// State of one object at a tick, in GCRS.
 struct ObjectState {
-  Vec<Gcrs> position_m;                         // of an object that the node moves
+  Vec<Gcrs> position_m;                         // set for an object that the node moves
   Vec<Gcrs> velocity_m_per_s;                   // the model's
   std::optional<Vec<Gcrs>> slope_m_per_s = {};  // derivative of the position, if another
-  std::optional<AttitudeState> attitude = {};   // of an object that the node turns
+  std::optional<AttitudeState> attitude = {};   // set for an object that the node turns
   std::optional<double> albedo = {};            // instead of the scenario's, of one that it moves
 };
 
@@ -40,11 +40,11 @@ using ObjectStateList = std::vector<std::optional<ObjectState>>;
 struct ActorTask {
   std::string node;
   std::vector<std::string> objects;  // those that it moves or turns
-  nlohmann::json options;            // of the scenario, an object
-  std::string start_utc;             // of the scenario
-  std::uint64_t seed = 0;            // of the scenario
+  nlohmann::json options;            // an object, as the scenario has it
+  std::string start_utc;             // start of the scenario
+  std::uint64_t seed = 0;            // seed of the scenario
   SimTime tick;                      // length of one
-  Tick last_tick = 0;                // of the run
+  Tick last_tick = 0;                // last one of the run
   Tick period_ticks = 1;             // between two steps
 
   /// An option that is a number, or three. Throw `Error` "option KEY: reason" if it is not there or

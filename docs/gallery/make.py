@@ -39,7 +39,7 @@ class Gallery:
         return self.demo_run
 
     def in_place(self, picture, script, *arguments):
-        """Of scripts that write into docs/gallery alone."""
+        """Runs a script that writes into docs/gallery alone."""
         self.python(script, *arguments)
         if self.out != HERE:
             shutil.copy(HERE / picture, self.out / picture)

@@ -42,7 +42,7 @@ def table_3(found):
 
 
 def bias(three, material):
-    """Of 40,000 seeds, and of the expected light."""
+    """The bias by 40,000 seeds, and by the expected light."""
     many, quiet = (three["figures"][f"table3_{material}_{key}"] for key in ("bias_percent", "bias_without_noise_percent"))
     return f"{many['value']:+.3f} +- {many['anchor_value']:.3f} % off (without noise {quiet['value']:+.3f} %)"
 

@@ -138,7 +138,7 @@ bool DatasetDirectory::begin(const DatasetTask& task, bool force) {
     write_file_whole(part("plan.json"),
                      dataset_head(plan_) + ",\"tasks\":" + std::to_string(task.count) + "}\n");
     write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
-    remove_file(path_ + "/dataset.json");  // of fewer seeds
+    remove_file(path_ + "/dataset.json");  // fewer seeds are no longer all
     lock_->take(directory_byte, FileLock::Use::shared);
   } else {
     require_tasks(task);

@@ -15,7 +15,7 @@ struct DatasetPlan {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::uint64_t seeds_per_shard = 100;
   std::string scenario_text;
-  std::string digest;  // of everything that determines its bytes
+  std::string digest;  // stands for everything that determines its bytes
 
   std::size_t shards() const { return std::size_t((last_seed - first_seed) / seeds_per_shard + 1); }
   std::uint64_t first_of(std::size_t shard) const { return first_seed + shard * seeds_per_shard; }

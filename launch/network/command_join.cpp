@@ -253,7 +253,7 @@ class Join {
   std::string master_;     // numeric address
   std::uint64_t run_id_ = 0;
   const std::string digest_ = scenario_digest(scenario_);
-  std::unique_ptr<RunLock> directory_lock_;  // of a directory not locked by the launch
+  std::unique_ptr<RunLock> directory_lock_;  // null: the launch locks the directory
 };
 
 /// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" unexpanded.

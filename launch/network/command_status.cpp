@@ -27,7 +27,7 @@ namespace {
 struct StatusOptions {
   std::string master, keys;
   bool once = false, watch = false, healthy = false;
-  ClockRequest request;  // of `dmise clock`
+  ClockRequest request;  // what `dmise clock` asks for
 };
 
 constexpr double patience_s = 2.0;

@@ -42,7 +42,7 @@ class RunClock : public ObservatoryClock {
   std::string ended_;
   double pace_ = 0.0, tick_s_ = 0.0;
   double granted_s_ = 0.0;         // time of the tick that the run may process
-  double offset_s_ = 0.0;          // of simulation time at the pace's zero
+  double offset_s_ = 0.0;          // simulation time at the pace's zero
   mutable double latest_s_ = 0.0;  // that was told: time does not go back
   std::thread thread_;
 };

@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PLATFORM = "manylinux_2_36_x86_64"
 PROJECT = tomllib.loads((ROOT / "clients/python/pyproject.toml").read_text())["project"]
 NAME = f"{PROJECT['name']}-{PROJECT['version']}"
-# Of what is installed, the programs and what they read; manuals and completions are for a system's package.
+# Programs and what they read are kept; manuals and completions are for a system's package.
 KEPT = {"bin": "bin", "lib/dmise": "lib/dmise", "share/dmise": "share/dmise"}
 WHEN = (1980, 1, 1, 0, 0, 0)  # equal content gives equal bytes
 

@@ -11,7 +11,7 @@ class FileLock {
  public:
   /// Creates the file and its parent directories. Throws `Error` if that fails.
   explicit FileLock(const std::string& path);
-  /// Of an open file, which it closes.
+  /// Takes over an open file, which it closes.
   explicit FileLock(int descriptor) : fd_(descriptor) {}
   ~FileLock();
   FileLock(FileLock&& other) noexcept;

@@ -13,7 +13,7 @@ struct LockHolder {
   std::string host;  // name of the machine or container
   std::int64_t pid = 0;
   std::string since_utc, command;
-  std::uint64_t run_id = 0;  // of the time-master; 0: not yet known
+  std::uint64_t run_id = 0;  // run of the time-master; 0: not yet known
 };
 
 /// This process.

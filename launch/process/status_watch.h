@@ -12,7 +12,7 @@ namespace dmise {
 class StatusWatch {
  public:
   struct Layout {
-    int columns = 80, rows = 24;  // of the terminal; of nodes beyond, the number is shown
+    int columns = 80, rows = 24;  // size of the terminal; nodes beyond it are only counted
     bool colours = false;
   };
 

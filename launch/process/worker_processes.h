@@ -8,8 +8,8 @@ namespace dmise {
 /// Result of `work_in_processes`.
 struct WorkOutcome {
   bool interrupted = false;      // by `go_on`, or by a signal
-  std::string failure;           // of the first item that failed; empty: none
-  bool is_config_error = false;  // of the failure
+  std::string failure;           // why the first item that failed did; empty: none failed
+  bool is_config_error = false;  // it was a `ConfigError`
 };
 
 /// Calls `work(item)` for the items 0..items-1 in `workers` processes that are forked from this one

@@ -351,10 +351,10 @@ class Launch {
   const Scenario& scenario_;
   RunDirectory& directory_;
   Tick first_tick_;
-  Tick shown_tick_ = 0;  // of the progress line, which never goes back: nodes leave at the end
+  Tick shown_tick_ = 0;  // tick of the progress line, which never goes back: nodes leave at the end
   MetricsPorts metrics_;
   Supervisor processes_, view_;
-  std::string operator_token_;  // of the view of a run with keys
+  std::string operator_token_;  // for the view, if the run has keys
   std::string first_cause_;     // if the master cannot report it
   int frames_total_ = 0;
 };

@@ -11,8 +11,8 @@ struct LaunchOptions {
   int threads = 1;
   int hosts = 0;  // > 0: number of agents for the sensors
   bool force = false;
-  bool allow_programs = false;               // of the scenario's nodes
-  std::string metrics, log_format = "text";  // of every process
+  bool allow_programs = false;               // the scenario's nodes may be programs
+  std::string metrics, log_format = "text";  // how every process reports
   bool nodes_elsewhere = false;              // nodes are started by `dmise join`
   bool view = false;                         // a gateway shows the run to browsers
   bool view_truth = false;                   // also its truth

@@ -54,7 +54,7 @@ bool is_sensor_directory(const fs::path& directory) {
 /// and not a link.
 void remove_products(const fs::path& directory, bool (*is_product)(std::string_view name)) {
   std::error_code ignored;
-  if (path_exists(path_in(directory.string(), run_file::record))) return;  // of a run there
+  if (path_exists(path_in(directory.string(), run_file::record))) return;  // a run is there
   std::vector<fs::path> products;
   for (const auto& entry : fs::directory_iterator(directory, ignored))
     if (is_product(entry.path().filename().string())) products.push_back(entry.path());

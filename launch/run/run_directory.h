@@ -17,7 +17,7 @@ class RunDirectory {
 
   const std::string& path() const { return path_; }
   const std::string& digest() const { return digest_; }
-  /// Of the texts of the scenario's catalogues, as they were when this object was made.
+  /// Hashes of the texts of the scenario's catalogues, as they were when this object was made.
   const std::vector<std::string>& catalogue_sha256() const { return catalogue_sha256_; }
   RunLock& lock() { return *lock_; }
 

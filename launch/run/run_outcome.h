@@ -16,7 +16,7 @@ struct RunOutcome {
   std::string reason;                // unless complete or interrupted
   double wall_s = 0.0;               // with that of the parts before
   int parts = 1;                     // in which it was made: more than one of a run that went on
-  std::vector<NodeStatus> nodes;     // of processes
+  std::vector<NodeStatus> nodes;     // one per process
   std::vector<std::string> dropped;  // nodes that the run went on without
 };
 

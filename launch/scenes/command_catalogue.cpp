@@ -151,7 +151,7 @@ void print_synthetic(const SynthOptions& options) {
 
 struct FactsOptions {
   std::string path, out;
-  std::string kind = "diameter", unit;  // of sizes; no unit: m, or m2
+  std::string kind = "diameter", unit;  // what sizes are; no unit: m, or m2
   FactsColumns columns;
 };
 

@@ -34,7 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* deep_stars_name = "deepstars.dat";
-/// Of the file of 2,412,252 records that the tests were run with.
+/// The file of 2,412,252 records that the tests were run with has this hash.
 constexpr std::string_view deep_stars_sha256 =
     "136301c017094044d24b74711eeb3d693e908ec6d31c0f217a05565fb4704a00";
 

@@ -29,7 +29,7 @@ def simplified(points):
 
 
 def is_edge(a, b):
-    """Of the map, where land goes on beyond it."""
+    """Whether a side lies on the edge of the map, where land goes on beyond it."""
     return min(a[1], b[1]) < -85.5 or abs(a[0]) > 179.9 and abs(b[0]) > 179.9 or abs(a[0] - b[0]) > 180
 
 

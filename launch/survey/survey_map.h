@@ -16,8 +16,8 @@ struct MapMark {
 struct SurveyMap {
   std::string title, subtitle;
   std::vector<Shell> shells;
-  std::vector<ShellSummary> summaries;  // of the shells
-  MapCells cells;                       // of all sensors
+  std::vector<ShellSummary> summaries;  // one per shell
+  MapCells cells;                       // all sensors together
   std::vector<MapMark> sites;
 };
 

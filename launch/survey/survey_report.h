@@ -12,7 +12,7 @@ namespace dmise {
 struct ChosenNetwork {
   SiteChoice choice;
   std::vector<CandidateSite> candidates;
-  SurveySummary summary;  // of the chosen sites and of what is in orbit
+  SurveySummary summary;  // chosen sites and what is in orbit
 };
 
 /// Results of a survey. The references must outlive it.

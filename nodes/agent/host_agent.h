@@ -7,7 +7,7 @@
 namespace dmise {
 
 struct HostAgentOptions {
-  std::string name;                        // of the agent in the run
+  std::string name;                        // name that the agent has in the run
   std::string master;                      // address of the time-master
   std::string bind = "tcp://127.0.0.1:0";  // nodes of the host join here; also ipc://PATH
   double join_within_s = 30.0;
@@ -24,7 +24,7 @@ struct HostAgentResult {
   std::uint64_t messages_in = 0;   // published elsewhere, each counted once
   std::uint64_t messages_out = 0;  // published on this host
   std::uint64_t refused = 0;       // with keys: published here under another's name
-  double cpu_s = 0.0;              // of this process during the run
+  double cpu_s = 0.0;              // processor time of this process during the run
 };
 
 /// Runs the agent of a host, which connects the nodes of the host to the run. To its nodes it is

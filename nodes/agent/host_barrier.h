@@ -25,7 +25,7 @@ class HostBarrier {
     bool silent = false;
     bool left = false;
     Tick done = -1;
-    std::deque<TickTally> manifests;  // of ticks that may be repeated
+    std::deque<TickTally> manifests;  // ticks that may be repeated
     Pulse pulse;
 
     /// Last tick up to which nobody waits for it.

@@ -16,7 +16,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t max_tracks = 10'000;  // of one tick; 16 MiB of a message are 25,000
+constexpr std::size_t max_tracks = 10'000;  // in one tick; 16 MiB of a message are 25,000
 constexpr std::uint32_t max_exposures = 1000;
 constexpr double max_sigma_m = 1e12, max_sigma_m_per_s = 3e8;
 

@@ -63,7 +63,7 @@ class OwnTracker : public Tracker {
   Replay replay_;
   ForceModel forces_;
   std::string roster_, roster_arrays_;          // as the program hears them
-  std::map<std::uint32_t, std::string> names_;  // of catalogue numbers
+  std::map<std::uint32_t, std::string> names_;  // by catalogue number
   std::set<std::string, std::less<>> cued_;     // sensors
   std::map<std::uint32_t, Live> live_;          // by id
   std::set<std::uint32_t> ended_;               // ids

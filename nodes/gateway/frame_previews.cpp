@@ -223,7 +223,7 @@ struct FramePreviews::Work {
   }
 
   Security security;
-  std::string directory;  // of the run
+  std::string directory;  // where the run is
   zmq::context_t context{1};
   std::map<std::string, Line> lines;  // by sensor
   std::uint64_t run_id = 0;

@@ -166,7 +166,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   beast::flat_buffer buffer_{2 * max_head_bytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
   AnswerSender sender_{stream_, hub_.options.request_within_s};
-  std::string address_;  // of the client
+  std::string address_;  // where the client is
   bool has_access_ = false;
 };
 

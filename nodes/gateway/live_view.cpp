@@ -18,9 +18,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the layout is little endian");
 
-constexpr std::size_t max_tracks = 5000, max_detections = 200;  // of a frame
-constexpr std::size_t max_truths = 500;                         // of a frame, shown
-constexpr int points_per_side = 6;                              // of a field's border
+constexpr std::size_t max_tracks = 5000, max_detections = 200;  // detections per frame
+constexpr std::size_t max_truths = 500;                         // objects shown of a frame
+constexpr int points_per_side = 6;                              // on each side of a field's border
 constexpr double unix_epoch_jd = 2440587.5;
 
 template <class F>
@@ -102,7 +102,7 @@ void LiveView::take(const ObjectStates& states) {
 void LiveView::take(const FrameReport& report) {
   if (!earth_) return;
   SensorView& sensor = sensors_[report.sensor];
-  if (report.frame < sensor.report.frame) return;  // of a process that replaced another
+  if (report.frame < sensor.report.frame) return;  // from a process begun again
   sensor.report = report;
   const Rotation<Itrs, Gcrs> itrs_from_gcrs = earth_->itrs_from_gcrs(report.middle);
   sensor.position_m = itrs_from_gcrs * report.sensor_position_m;

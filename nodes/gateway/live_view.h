@@ -51,10 +51,10 @@ class LiveView {
     FrameReport report;
     std::vector<Vec<Itrs>> field;  // unit directions of the border, from the first pixel on
     Vec<Itrs> position_m, boresight;
-    std::vector<Detection> detections;  // of the last frame
+    std::vector<Detection> detections;  // in the last frame
     std::uint32_t detections_frame = 0;
     std::uint64_t detections_total = 0;
-    std::vector<Truth> truths;  // of the objects in the last frame
+    std::vector<Truth> truths;  // objects in the last frame
     std::uint32_t truths_frame = 0;
     std::optional<Task> task;
   };

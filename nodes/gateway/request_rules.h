@@ -33,7 +33,7 @@ using RequestPath = std::variant<LiveRequest, FrameRequest, FileRequest>;
 
 struct RequestTarget {
   RequestPath path;
-  std::string token;  // of the query
+  std::string token;  // access token in the query
 
   bool operator==(const RequestTarget&) const = default;
 };

@@ -23,7 +23,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds publish_interval{100}, hello_interval{500}, silence{2000};
 constexpr milliseconds roster_interval{2000};
 constexpr milliseconds receive_at_most{50};  // before viewers are told
-constexpr int unread_messages = 64;          // of the broker; further ones wait there, then drop
+constexpr int unread_messages = 64;  // at the broker's socket; further ones wait there, then drop
 constexpr std::size_t max_commands = 16;
 
 // Topics that every viewer may see; truth has endpoints of its own.
@@ -162,7 +162,7 @@ class RunObserver::Connections {
       }
     if (truth_)
       for (const auto& publisher : endpoints.publishers()) follow_truth(publisher);
-    std::uint64_t incarnation = 0;  // of the broker; a recording that is replayed has none
+    std::uint64_t incarnation = 0;  // the broker's; a recording that is replayed has none
     for (const auto& node : status.nodes)
       if (node.name == broker_name) incarnation = node.incarnation;
     if (!endpoints.observe_endpoint().empty())
@@ -197,7 +197,7 @@ class RunObserver::Connections {
     options_.frames_served_at(status.run_id, std::move(by_sensor));
   }
 
-  /// Takes a message of the broker. Of the states of objects only the newest is decoded, when
+  /// Takes a message of the broker. Only the newest states of objects are decoded, when
   /// viewers are told.
   void heard(RawMessage message) {
     if (!receiver_ || message.size() < 3) return;
@@ -295,7 +295,7 @@ void RunObserver::run(const std::function<void()>& changed) {
       next = now() + publish_interval;
       connections.publish();
       changed();
-    } catch (const ConfigError& error) {  // of the operator's key
+    } catch (const ConfigError& error) {  // the operator's key is at fault
       connections.view().notify(error.what());
     } catch (const Error& error) {
       spdlog::warn("{}", error.what());

@@ -13,7 +13,7 @@
 namespace dmise {
 
 struct RunObserverOptions {
-  std::string name = "gateway";  // of its key
+  std::string name = "gateway";  // name of its key
   std::string master;            // address of the time-master
   std::string keys;              // directory of keys; empty: none
   bool takes_truth = false;      // from each sensor; with keys its key must allow that

@@ -17,7 +17,7 @@ inline constexpr MessageSlot slots_of_history[] = {MessageSlot::objects, Message
 /// What viewers saw at one simulation time.
 struct ViewSnapshot {
   double time_s = 0.0;
-  std::vector<SharedMessage> messages;  // of `slots_of_history`, those there are
+  std::vector<SharedMessage> messages;  // what there is for `slots_of_history`
 };
 
 /// The past of a run, for viewers that look back. Covers the whole run in limited memory: when it

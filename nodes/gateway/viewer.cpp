@@ -140,7 +140,7 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
     if (!hub_.content.control(command))
       answer(to_json("refused", "too many commands wait for the clock"));
   }
-  /// Of several answers that wait, the last is sent.
+  /// Only the last of several answers that wait is sent.
   void answer(std::string json) {
     answer_ = std::make_shared<const ViewerMessage>(ViewerMessage{std::move(json)});
   }

@@ -13,8 +13,8 @@ struct ClockCommand {
   /// Values are those of Control.Action in proto/dmise/v1/node.proto.
   enum class Action { pause = 1, step = 2, go_on = 3, pace = 6 };
   Action action = Action::pause;
-  std::int64_t ticks = 1;  // of a step, [1, max_step_ticks]
-  double factor = 0.0;     // of a pace: simulated seconds per second, [0, max_pace_factor]
+  std::int64_t ticks = 1;  // ticks of a step, [1, max_step_ticks]
+  double factor = 0.0;     // pace: simulated seconds per second, [0, max_pace_factor]
 
   bool operator==(const ClockCommand&) const = default;
 };

@@ -21,7 +21,7 @@ struct WebServerOptions {
 
   // Limits.
   std::size_t max_connections = 64;
-  std::size_t max_commands_per_s = 20;  // of one viewer
+  std::size_t max_commands_per_s = 20;  // from one viewer
   double request_within_s = 10.0;       // the head of a request, and reading its answer
   double idle_s = 30.0;                 // silence of a viewer that does not answer pings
 };

@@ -16,9 +16,9 @@ namespace {
 /// Before the texts of each record. A journal stays on its host: integers have its byte order.
 struct Head {
   std::int64_t tick = 0;
-  std::uint32_t kind = 0;                            // of the message; 0: the tick ends
+  std::uint32_t kind = 0;                            // kind of the message; 0: the tick ends
   std::uint32_t topic = 0, payload = 0, arrays = 0;  // bytes
-  std::uint32_t crc = 0;                             // of the texts and of this with crc 0
+  std::uint32_t crc = 0;                             // over the texts and this with crc 0
   std::uint32_t spare = 0;
 };
 

@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 constexpr Tick max_ahead = 64;                 // calls
-constexpr std::size_t states_ahead = 100'000;  // of objects: 7 MB
+constexpr std::size_t states_ahead = 100'000;  // states of objects: 7 MB
 constexpr std::size_t calls_held = 3;          // for joining two, and for the error between three
 constexpr double tolerated_error_m = 1.0;  // between ticks, or what the run's order is stated for
 

@@ -60,16 +60,16 @@ class OwnActor : public Participant {
   EnvironmentByMinutes environment_;
   OwnNodeSettings settings_;
   std::vector<const OwnObject*> objects_;  // in the scenario's order
-  std::vector<std::uint32_t> turned_;      // of these, by index
+  std::vector<std::uint32_t> turned_;      // those that the node turns, by index
   std::unique_ptr<OwnModel> program_;
   OwnRecord said_;
   std::optional<InputJournal> journal_;  // if it consumes topics
   Tick kept_ = 0;                        // the first tick that is not in it
   std::optional<InputReader> heard_;     // at the next call
-  std::deque<EnvironmentState> asked_;   // of the calls from the next on that the program knows of
-  std::deque<ObjectStates> held_;        // of the last calls
+  std::deque<EnvironmentState> asked_;   // calls that the program knows of, the next first
+  std::deque<ObjectStates> held_;        // states of the last calls
   OwnRestarts restarts_;
-  std::vector<bool> warned_;       // of objects that are not interpolated well
+  std::vector<bool> warned_;       // objects that are not interpolated well
   std::vector<bool> underground_;  // those that were told to be
   std::atomic<std::uint64_t> steps_{0};
 };

@@ -38,7 +38,7 @@ class OwnFunction : public OwnModel {
 
   ModelFunction function_;
   std::string node_, sensor_;
-  std::shared_ptr<const std::vector<std::string>> answer_;  // of the last request
+  std::shared_ptr<const std::vector<std::string>> answer_;  // to the last request
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ class OwnModel {
 
   struct Stepped {
     ObjectStates states;
-    std::uint64_t digest = 0;  // of the states as they came
+    std::uint64_t digest = 0;  // digest of the states as they came
     std::optional<std::string> checkpoint;
   };
   /// Asks for the states of a tick; false after the stop.
@@ -54,7 +54,7 @@ class OwnModel {
   struct Tracked {
     TrackSet tracks;
     std::optional<v1::OwnNodePoints> points;
-    std::uint64_t digest = 0;  // of both as they came
+    std::uint64_t digest = 0;  // digest of both as they came
     std::optional<std::string> checkpoint;
   };
   /// What it makes of a tick's exposures; nothing after the stop.
@@ -64,7 +64,7 @@ class OwnModel {
   struct Answer {
     v1::OwnNodeAnswer head;
     std::vector<std::string_view> frames;  // with that of the head
-    std::shared_ptr<const void> owner;     // of the frames
+    std::shared_ptr<const void> owner;     // keeps the memory of the frames
   };
   /// The answer in these frames. Throws `Error` for one that is none or says that the model failed.
   static Answer answer_in(std::vector<std::string_view> frames, std::shared_ptr<const void> owner);

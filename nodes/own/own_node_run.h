@@ -20,9 +20,9 @@ using ModelStarter = std::function<std::unique_ptr<OwnModel>(const ModelBeginnin
 /// How the model of a node is run, whatever it is for.
 struct OwnNodeSettings {
   ModelStarter start;
-  std::string log_path = {};      // of the program's output; empty: stderr of this process
-  std::string journal_path = {};  // of what an actor hears, if it consumes topics
-  std::string error_prefix = {};  // of errors; empty where the run names the node
+  std::string log_path = {};      // where the program's output goes; empty: stderr of this process
+  std::string journal_path = {};  // keeps what an actor hears, if it consumes topics
+  std::string error_prefix = {};  // begins each error; empty where the run names the node
   std::function<void(const std::string&)> note = [](const std::string&) {};  // hears lines
   const Event* stop = nullptr;
 };
@@ -47,7 +47,7 @@ void describe_sensor(const SensorConfig& sensor, v1::OwnNodeSensor& told);
 /// checkpoint and must say the same.
 class OwnRecord {
  public:
-  /// Of the next call of the program.
+  /// The next call of the program.
   Tick next() const { return next_; }
   /// Whether a checkpoint is asked for with a call.
   static bool wants_checkpoint(Tick call);

@@ -22,10 +22,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds look_every{20};          // for the end of the process
-constexpr milliseconds last_words_within{200};  // of a process that has ended
+constexpr milliseconds last_words_within{200};  // after a process has ended
 constexpr milliseconds time_to_end{500};
 constexpr double working_within_s = 900.0;  // longest work on one answer
-constexpr double alive_every_share = 0.2;   // of the time after which it is silent
+constexpr double alive_every_share = 0.2;   // share of the time after which it is silent
 constexpr double longest_alive_every_s = 1.0;
 
 std::string seconds_text(double seconds) {

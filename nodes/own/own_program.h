@@ -18,10 +18,10 @@ namespace dmise {
 
 /// How a program is started and how long it may be silent.
 struct ProgramSettings {
-  std::string name;                  // of the node
+  std::string name;                  // name of the node
   std::vector<std::string> command;  // the first is the program's path
   std::string directory;             // in which it runs
-  std::string log_path;              // of its output; empty: stderr of this process
+  std::string log_path;              // where its output goes; empty: stderr of this process
   double start_within_s = 30.0;
   double silent_after_s = 5.0;
   const Event* stop = nullptr;  // ends the wait for an answer

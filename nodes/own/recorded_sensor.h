@@ -13,8 +13,8 @@ struct RecordedSensor {
   const Scenario& scenario;
   const std::string& sensor;
   std::uint32_t frames = 0;   // that the recording must have, from the first; others end the run
-  const std::string& digest;  // of the scenario
-  const std::string& path;    // of the recording
+  const std::string& digest;  // digest of the scenario
+  const std::string& path;    // where the recording is
 };
 
 /// Finds in the frames of a sensor what its detector has found in the recorded run. Throws

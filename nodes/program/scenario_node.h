@@ -14,8 +14,8 @@ struct ScenarioNode {
   struct Inputs {
     const Scenario& scenario;
     Threads& threads;
-    std::string directory;  // of the run, if the node writes products
-    bool allow_programs;    // of the scenario
+    std::string directory;  // where the run is, if the node writes products
+    bool allow_programs;    // whether the scenario may start programs
   };
 
   const char* name;             // its row in node_kinds(); the program is dmise-NAME

@@ -41,7 +41,7 @@ class AnswerSender {
   beast::tcp_stream& stream_;
   double piece_within_s_;
   HttpAnswer answer_;
-  std::optional<http::response_serializer<http::string_body>> rest_;  // of the answer
+  std::optional<http::response_serializer<http::string_body>> rest_;  // writes the answer
 };
 
 }  // namespace dmise

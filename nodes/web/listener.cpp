@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr int send_buffer_bytes = 256 << 10;  // of a connection, in the kernel
+constexpr int send_buffer_bytes = 256 << 10;  // queue of a connection in the kernel
 // Bytes that wait in it to be sent: a slow line is seen to make progress each time these are gone.
 using UnsentBytes = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
 constexpr int unsent_bytes = 16 << 10;

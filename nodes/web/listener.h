@@ -12,7 +12,7 @@ struct ListenOptions {
   std::string host = "127.0.0.1";
   unsigned short port = 0;  // 0: any free port
   bool has_tokens = false;
-  const char* strangers_need = "needs a file of tokens";  // of addresses other than loopback
+  const char* strangers_need = "needs a file of tokens";  // at addresses other than loopback
   std::size_t max_connections = 64;
 };
 

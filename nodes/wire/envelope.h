@@ -35,7 +35,7 @@ struct Envelope {
   std::uint64_t run_id = 0;
   std::string publisher;
   std::uint64_t incarnation = 1;
-  std::uint64_t sequence = 0;  // of the publisher's messages on this topic, from 1; a probe has 0
+  std::uint64_t sequence = 0;  // the publisher's messages on this topic, from 1; a probe has 0
   MessageKind kind = MessageKind::probe;
   Tick tick = 0;
   SimTime time;

@@ -27,7 +27,7 @@ struct Received {
   std::string topic;
   Envelope envelope;
   std::shared_ptr<const State> state;
-  std::uint64_t content_digest = 0;  // of kind, payload and arrays
+  std::uint64_t content_digest = 0;  // digest of kind, payload and arrays
 };
 
 /// Validates received messages for every subscription. Messages that fail a check are counted by

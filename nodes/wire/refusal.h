@@ -12,8 +12,8 @@ enum class Refusal : std::uint8_t {
   frames,          // number or size of the frames
   envelope,        // not an Envelope
   seal,            // CRC-32C of the message
-  schema_version,  // of another version of the wire
-  run,             // of another run
+  schema_version,  // another version of the wire
+  run,             // another run
   topic,           // unknown, or not the publisher's, or of another kind
   tick,            // outside the run, or tick and time disagree
   payload,         // not the message that the envelope announces, or sizes that disagree

@@ -12,11 +12,11 @@
 namespace dmise {
 namespace {
 
-constexpr double widths = 3.0;            // of the point spread, around a trail
-constexpr double saturated_share = 0.9;   // of the full well
-constexpr double rim_share = 0.1;         // of a source's light: more around it is another's
-constexpr double rim_begins = 0.8;        // of the margin
-constexpr double background_share = 0.5;  // of the noise: more light of sources is no background
+constexpr double widths = 3.0;            // margin around a trail, in widths of the point spread
+constexpr double saturated_share = 0.9;   // brighter pixels are saturated; full well = 1
+constexpr double rim_share = 0.1;         // part of a source's light: more around it is another's
+constexpr double rim_begins = 0.8;        // part of the margin, counted from the source
+constexpr double background_share = 0.5;  // noise = 1: more light of sources is no background
 
 ExpectedElectronImage light_of(const FrameProducts& frame, double exposure_s) {
   ExpectedElectronImage light = frame.planes.background;
@@ -230,7 +230,7 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
     sum2 += difference_e * difference_e / (double(sigma_e_[i]) * sigma_e_[i]);
     if (!background_[i]) continue;
     largest.background_sigma = std::max(largest.background_sigma, difference);
-    // Of light and what it changes of the noise: sqrt(s^2 + e) - s = e / 2s.
+    // Light changes the noise, too: sqrt(s^2 + e) - s = e / 2s.
     const double noise = reference_.noise.pixels[i];
     const double in_noise_e = beyond(made.noise.pixels[i] - noise, 0.5 * rounding_e / noise);
     largest.noise = std::max(largest.noise, in_noise_e / noise);

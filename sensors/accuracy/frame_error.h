@@ -18,13 +18,13 @@ struct ReferenceSource {
   double margin_px = 0.0;            // around it
   double light_e = 0.0;              // in the capsule
   double peak_sigma = 0.0;           // in its brightest pixel, in the noise there
-  PixelPosition centroid;            // of its light
+  PixelPosition centroid;            // weighted by its light
   double snr = 0.0;                  // by a matched filter
 };
 
 /// What a frame lacks of the reference.
 struct FrameError {
-  ErrorBound largest;           // of background and sources that count
+  ErrorBound largest;           // background and the sources that count
   double residual_sigma = 0.0;  // rms of the difference of all pixels, in their noise
 };
 
@@ -58,7 +58,7 @@ class FrameComparison {
   ExpectedElectronImage light_;
   Expected reference_;
   std::vector<float> sigma_e_;     // sqrt(light + dark + read^2) of each pixel
-  std::vector<float> rounding_e_;  // of a transform's single precision, of each row's pixels
+  std::vector<float> rounding_e_;  // error by single precision of each row's pixels
   std::vector<bool> background_;
   std::vector<ReferenceSource> sources_, faint_;  // faint: their capsules are background
 };

@@ -12,8 +12,8 @@ namespace dmise {
 struct CheckedObject {
   std::string sensor;
   std::uint32_t frame = 0, catalogue_number = 0;
-  ExpectedDetection look;  // of the survey; zeros: it expects no light
-  double signal_e = 0.0;   // of its light in the frame; 0: none
+  ExpectedDetection look;  // forecast by the survey; zeros: it expects no light
+  double signal_e = 0.0;   // its light in the frame; 0: none
   bool found = false;      // by the frame's detections
 };
 

@@ -10,7 +10,7 @@ namespace dmise {
 /// One way to make a frame, beside the reference. NaN: nothing in the frame can show it.
 struct TradeoffRow {
   std::string effect;  // "budget" of a plan
-  std::string level;   // of the effect; the plan's accuracy
+  std::string level;   // level of the effect, or accuracy of the plan
   ErrorBound bound;    // stated by the level or plan
   ErrorBound measured;
   double residual_sigma = 0.0;              // rms over all pixels
@@ -41,7 +41,7 @@ class Tradeoff {
   FrameProducts reference_;
   FrameComparison comparison_;
   std::vector<TradeoffRow> rows_;
-  std::vector<SensorConfig> sensors_;  // of the rows
+  std::vector<SensorConfig> sensors_;  // one per row
 };
 
 }  // namespace dmise

@@ -183,7 +183,7 @@ class AlpacaConnection : public Connection, public std::enable_shared_from_this<
   beast::flat_buffer buffer_{2 * max_head_bytes + max_alpaca_body_bytes};
   std::optional<http::request_parser<http::string_body>> parser_;
   AnswerSender sender_{stream_, hub_.options.request_within_s};
-  std::string address_;  // of the client
+  std::string address_;  // where the client is
   bool has_access_ = false;
   Transaction transaction_;
   std::function<bool()> waits_for_;

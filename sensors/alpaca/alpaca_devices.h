@@ -14,7 +14,7 @@ namespace dmise {
 /// What clients set of one device, beside what the device itself keeps.
 struct DeviceSession {
   bool connected = false;
-  std::optional<double> target_ra_h = {}, target_dec_deg = {};  // of a telescope
+  std::optional<double> target_ra_h = {}, target_dec_deg = {};  // where a telescope is to go
 };
 
 struct DeviceKind;

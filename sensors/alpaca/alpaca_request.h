@@ -24,7 +24,7 @@ class BadRequest : public Error {
 /// Parameters of a call. Their names are in lower case, for case does not matter.
 class AlpacaParameters {
  public:
-  /// Parses "Name=value&..."; in a form + is a space. Of a name that comes twice the last counts.
+  /// Parses "Name=value&..."; in a form + is a space. The last counts if a name comes twice.
   static AlpacaParameters parse(std::string_view text);
 
   // A parameter; throw `BadRequest` for one that is missing or not of its kind. `name` is given in
@@ -57,7 +57,7 @@ struct AlpacaCall {
   std::variant<DeviceCall, ApiVersionsCall, DescriptionCall, ConfiguredDevicesCall, SetupCall> what;
   AlpacaParameters parameters;
   std::uint32_t client_transaction = 0;
-  std::string token;  // of the query
+  std::string token;  // access token in the query
 };
 
 inline constexpr std::size_t max_alpaca_target_bytes = 4096, max_alpaca_body_bytes = 8192;

@@ -11,7 +11,7 @@ struct AlpacaServerOptions {
   std::string host = "127.0.0.1";
   unsigned short port = 0;  // 0: any free port
   AccessTokens tokens = {};
-  int discovery_port = 0;     // of UDP, where clients ask for servers; 0: none hears them
+  int discovery_port = 0;     // UDP port where clients ask for servers; 0: none hears them
   std::string location = {};  // what the management API says of it
   bool connected = false;     // devices are, before a client connects
 

@@ -6,7 +6,7 @@ namespace {
 using Call = MemberCall;
 using Devices = Observatory::Devices;
 
-constexpr int no_calibrator = 0;  // of ASCOM's CalibratorStatus: NotPresent
+constexpr int no_calibrator = 0;  // ASCOM's CalibratorStatus NotPresent
 
 int cover_state(const Devices& d) { return int(d.cover.state(d.now)); }
 bool cover_moves(const Devices& d) { return d.cover.state(d.now) == CoverState::moving; }

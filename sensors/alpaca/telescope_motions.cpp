@@ -9,7 +9,7 @@ using Devices = Observatory::Devices;
 constexpr double sidereal_seconds_per_second = 1.00273790935;
 constexpr double arcsec_deg = 1.0 / 3600.0;
 
-/// Of a slew that its answer waits for.
+/// The answer to a synchronous slew: it comes when the telescope is there.
 MemberAnswer when_there(const Call& c) {
   return {.done = [&observatory = c.observatory, station = c.station] {
     bool slewing = false;

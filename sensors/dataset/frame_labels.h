@@ -22,8 +22,8 @@ struct LabelledFrame {
   const std::vector<ObjectLabel>& objects;
   const DrawnScenario& sample;
   const Clock& clock;
-  std::string digest;  // of the data set
-  std::string key;     // of its files
+  std::string digest;  // names the data set
+  std::string key;     // begins the names of its files
 
   int columns() const { return frame.counts.columns; }
   int rows() const { return frame.counts.rows; }

@@ -56,7 +56,7 @@ class SensorFrames {
   const Clock& clock_;
   std::string digest_;
   Taker taker_;
-  std::vector<ObjectLabel> objects_;  // of the frame at hand
+  std::vector<ObjectLabel> objects_;  // in the frame at hand
   LabelPlane plane_;
 };
 

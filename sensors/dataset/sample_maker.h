@@ -18,7 +18,7 @@ inline constexpr std::uint64_t max_sample_seed = 999'999'999;  // keys have nine
 /// One frame of a sample, as it goes into an archive.
 struct SampleFrame {
   std::string key;      // "000000012-atlanta-000001": seed, sensor, frame
-  std::string members;  // of a tar archive: KEY.image.npy, KEY.mask.npy, KEY.labels.json, KEY.fits
+  std::string members;  // tar members: KEY.image.npy, KEY.mask.npy, KEY.labels.json, KEY.fits
   std::string coco_image;
   std::vector<std::string> coco_annotations;
 };

@@ -30,11 +30,11 @@ class CostLines {
   using Levels = std::vector<std::pair<const EffectFacts*, int>>;
 
   std::string sensor_;
-  std::uint32_t last_frame_ = 0, frames_ = 0;  // of the next line
+  std::uint32_t last_frame_ = 0, frames_ = 0;  // newest frame, number of frames
   double total_s_ = 0.0, detection_s_ = 0.0, pss_mb_ = 0.0;
   std::vector<double> effects_s_;  // in the order of all_effects()
-  EffectPlan plan_;                // of the last frame
-  Levels levels_;                  // of the last line
+  EffectPlan plan_;                // as the last frame had it
+  Levels levels_;                  // as the last line said
 };
 
 }  // namespace dmise

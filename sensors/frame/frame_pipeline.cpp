@@ -50,7 +50,7 @@ struct FramePipeline::Work {
   std::optional<ExposurePlanner> planner;  // none: effects run as they are asked for
   std::optional<OpticsStage> optics;
   ExpectedElectronImage light;  // kept between frames: new memory costs more than filling it
-  CountImage used_counts;       // of an earlier frame: address space without memory behind it
+  CountImage used_counts;       // left by an earlier frame: address space without memory behind it
   DetectorMemory detector_memory;
   bool made_again = false;  // the frame at hand, for what it leaves to the next
 

@@ -34,7 +34,7 @@ struct FrameProducts {
   std::vector<StarTruth> stars;  // only on request, as are
   FlagImage flags;
   FramePlanes planes;
-  EffectPlan plan;    // of this exposure; no effects in it: unplanned
+  EffectPlan plan;    // for this exposure; no effects in it: unplanned
   EffectTimes times;  // wall clock, never part of a repeatable product
   double detection_s = 0.0, total_s = 0.0;
   bool stopped = false;  // while it was searched: it has no report
@@ -45,7 +45,7 @@ struct PipelineSettings {
   SensorConfig sensor;
   Clock clock;
   std::uint64_t seed = 1;
-  std::string digest;  // of the run, written into every frame
+  std::string digest;  // names the run in every frame
   double faintest_star_mag = 9.5;
   bool star_truth = false;
   OutputConfig output;                         // flags and planes that are wanted
@@ -60,9 +60,8 @@ struct PipelineSettings {
   std::vector<Part> radiance_parts;
   /// Takes the light of each object alone; needs the noise among the planes of `output`.
   ObjectLightTaker object_light;
-  SourceFinder finder = {};  // of a sensor with a detector of the user's
-  ExposureObserver observer =
-      {};  // of a sensor of the user's; empty: the command starts no programs
+  SourceFinder finder = {};        // a detector of the user's
+  ExposureObserver observer = {};  // a sensor of the user's; empty: the command starts no programs
 };
 
 /// Makes the frames of one sensor.

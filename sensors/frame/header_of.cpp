@@ -108,7 +108,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
       .focal_length_px = optics.focal_length_px(),
       .sensor_position_m = observer.position_m,
       .sensor_velocity_m_per_s = observer.velocity_m_per_s};
-  // Of a frame whose stars have no annual aberration none is put back.
+  // No aberration is put back in a frame whose stars have none.
   if (ran.has(AnnualAberration::facts))
     h.earth_velocity_m_per_s = environment.earth_velocity_m_per_s;
   h.band.name = header_text(h.band.name);

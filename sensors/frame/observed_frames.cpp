@@ -70,7 +70,7 @@ ObserverExposure ObservedFrames::exposure_of(const FrameTimes& exposure, const W
                         .middle = exposure.middle,
                         .end = exposure.end,
                         .environment = world.environment(exposure.middle)};
-  told.environment.earth_beside.reset();  // of another time
+  told.environment.earth_beside.reset();  // it belongs to another time
   const ObserverState at = observer_at(sensor_, platform(exposure, world), world,
                                        told.environment.earth, exposure.middle);
   told.position_m = at.position_m;

@@ -16,7 +16,7 @@ namespace dmise {
 struct StreamSource {
   std::shared_ptr<const Scenario> scenario;
   std::function<ScenarioInputs()> scene;
-  std::string digest;  // of the run, for headers
+  std::string digest;  // names the run in headers
 };
 
 struct StreamOptions {

@@ -124,7 +124,7 @@ class IndiConnection : public Connection, public std::enable_shared_from_this<In
 
   IndiHub& hub_;
   beast::tcp_stream stream_;
-  std::string address_;  // of the client
+  std::string address_;  // where the client is
   std::array<char, 16 << 10> bytes_{};
   IndiStream stream_text_;
   IndiInterest interest_;

@@ -14,14 +14,14 @@ namespace dmise {
 /// What clients set of one device, beside what the device itself keeps.
 struct IndiSession {
   bool connected = false;
-  std::string coordinates = "TRACK";  // of a telescope: what is done with those that are given
-  int slew_speed = 3;                 // of motions by hand, among the four
-  bool custom_rate = false;           // of its tracking
-  std::string element_set = {};       // of a satellite
+  std::string coordinates = "TRACK";  // what a telescope does with coordinates that are given
+  int slew_speed = 3;                 // which of the four speeds motions by hand have
+  bool custom_rate = false;           // the telescope tracks at a rate that a client gave
+  std::string element_set = {};       // TLE of a satellite that is to be followed
   std::string pass_start = {}, pass_end = {};
-  std::string upload = "UPLOAD_CLIENT";  // of a camera
+  std::string upload = "UPLOAD_CLIENT";  // where a camera's images go
   std::string frame_type = "FRAME_LIGHT";
-  bool outward = true;                         // of relative motions of a focuser
+  bool outward = true;                         // direction of relative motions of a focuser
   std::optional<std::string> noted_telescope;  // a client's name for that of a camera
   std::map<std::string, IndiState> after;      // a property's last command: ok or alert
 };
@@ -35,7 +35,7 @@ using IndiCall = StationCall<IndiDeviceKind, IndiSession>;
 struct IndiReading {
   std::vector<IndiItem> items;
   std::optional<IndiState> state = {};           // none: that of its last command
-  std::shared_ptr<const TakenImage> image = {};  // of a BLOB
+  std::shared_ptr<const TakenImage> image = {};  // what a BLOB contains
 };
 
 /// New values of a property: those that are given, else those it has.

@@ -17,7 +17,7 @@ struct IndiServerOptions {
   // Limits.
   std::size_t max_connections = 32;
   double request_within_s = 10.0;              // the first of a connection
-  double progress_within_s = 30.0;             // of a client that is sent something
+  double progress_within_s = 30.0;             // while a client is sent something
   std::size_t max_waiting_bytes = 64 << 20;    // for one client, before more is added
   std::size_t max_unanswered_bytes = 1 << 20;  // then its requests wait
   double between_looks_s = 0.1;                // at what has changed

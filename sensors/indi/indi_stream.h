@@ -50,7 +50,7 @@ class IndiStream {
   bool closing_ = false;  // the tag
   int depth_ = 0;
   std::string waiting_;
-  std::size_t looked_at_ = 0;  // of what waits
+  std::size_t looked_at_ = 0;  // first byte of `waiting_` not looked at yet
 };
 
 }  // namespace dmise

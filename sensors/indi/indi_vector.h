@@ -22,7 +22,7 @@ struct IndiItem {
   const char* name;
   const char* label;
   std::variant<std::string, double, bool> value = {};
-  IndiRange range = {};  // of a number
+  IndiRange range = {};  // that a number may have
 };
 
 /// What all properties of a name have.
@@ -31,7 +31,7 @@ struct IndiTitle {
   const char* label;
   const char* group;
   IndiKind kind = IndiKind::text;
-  IndiRule rule = IndiRule::one_of_many;  // of switches
+  IndiRule rule = IndiRule::one_of_many;  // how many switches may be on
 };
 
 struct IndiVector {

@@ -92,7 +92,7 @@ void set_track_mode(const Call& c, const Given& given) {
   c.session.custom_rate = custom;
 }
 
-/// Of the axes: in right ascension what follows the stars is the sidereal rate.
+/// The rates of the axes: in right ascension what follows the stars is the sidereal rate.
 IndiReading track_rate(const Call& c) {
   return c.of([](const Devices& d) {
     const double ra = sidereal_deg_per_s - d.telescope.ra_rate_deg_per_s();

@@ -183,7 +183,7 @@ void draw_moon(const View& view, OpticsStage& optics, ExpectedElectronImage& ima
   const Band& band = view.sensor().camera.band;
   const MoonRadiance moon(band, seen_moon(view, middle).above_air_m,
                           seen_sun(view, middle).above_air_m);
-  disc.finest_px *= 1.0 + std::cos(moon.phase_rad());  // of a crescent
+  disc.finest_px *= 1.0 + std::cos(moon.phase_rad());  // a crescent is thin
   const auto air = std::make_shared<const Throughput>(view);
   disc.at = [&, air](SimTime t) -> Radiance {
     const Vec<Gcrs> moon_m = seen_moon(view, t).above_air_m;

@@ -20,7 +20,7 @@ struct Disc {
   bool is_large = false;                    // against tiles, and nothing but its edges is uneven
   int rows_together = 1;                    // behind a rolling shutter it stands still so long
   std::function<Radiance(SimTime)> at = {};
-  std::function<DiscBox(SimTime)> box_at = {};  // of one time; none: it may be anywhere in the box
+  std::function<DiscBox(SimTime)> box_at = {};  // at one time; none: it may be anywhere in the box
 };
 
 /// Integrates a disc over the pixels of its box.

@@ -162,7 +162,7 @@ void run(LightFrame& frame) {
   frame.times[Stage::facts] += std::max(0.0, stage_s - (frame.times.sum_s() - before_s));
 }
 
-/// Of an exposure behind a closed shutter: objects are there, without light.
+/// Truth of an exposure behind a closed shutter: objects are there, without light.
 LightTruth without_light(LightFrame& f) {
   if (f.view.sensor().effects.has(SpaceObjects::facts)) {
     f.optics.begin(f.view.times(), 1.0);

@@ -35,7 +35,7 @@ struct PlanetExposure {
 /// A planet's way over the detector, as a point.
 struct PlanetTrail {
   std::array<SeenPlanet, 3> seen;
-  std::array<Vec<Gcrs>, 3> apparent;  // of the middle of its light
+  std::array<Vec<Gcrs>, 3> apparent;  // directions of the middle of its light
   std::array<PixelPosition, 3> pixel;
 };
 

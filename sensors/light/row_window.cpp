@@ -91,7 +91,7 @@ class Chase {
   }
 
  private:
-  static constexpr double margin_px = 16.0;  // of a blur about the frame
+  static constexpr double margin_px = 16.0;  // reach of a blur beyond the frame
 
   std::optional<double> row(SimTime t) const { return row_at_(t); }
   double delay_s(SimTime t) const {

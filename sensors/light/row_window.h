@@ -11,7 +11,7 @@ namespace dmise {
 using RowAt = std::function<std::optional<double>(SimTime)>;
 
 /// Returns when a rolling shutter exposes a moving source: from the time at which its row opens to
-/// the time at which the row where it then is closes. Of one that is as fast as the shutter the
+/// the time at which the row where it then is closes. If the source is as fast as the shutter, the
 /// longest such time, or 1 ns if its row is never open. Beyond the frame rows are as the nearest
 /// one. Exact for points; a blur is taken to be exposed as its centre.
 FrameTimes row_window(const View& view, const RowAt& row_at);

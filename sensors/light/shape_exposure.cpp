@@ -9,7 +9,7 @@ namespace {
 /// Light of one arc.
 struct ArcLight {
   double signal_e = 0.0, tilt = 0.0;
-  SimTime brightest;    // of the instants of the sum
+  SimTime brightest;    // instant with the most light among those summed
   double most = 0.0;    // photons/s/m2 then
   double sunlit = 0.0;  // for those
 };

@@ -14,12 +14,12 @@ struct ShapeSnapshot {
   ShapePose pose;
   Rotation<CameraFrame, Gcrs> camera_from_gcrs;
   Vec<CameraFrame> direction;     // apparent, unit, of its middle in that pose
-  double sunlit = 1.0;            // of the pose
-  double photons_per_s_m2 = 0.0;  // of all facets in that pose, as pictures show them
+  double sunlit = 1.0;            // share of sunlight on it in that pose
+  double photons_per_s_m2 = 0.0;  // all facets in that pose, as pictures show them
   /// Way of its middle from where `direction` is [px], in arcs of equal time, with the light of the
   /// whole object at the detector.
   std::vector<Arc> sweep;
-  double share = 1.0;  // of the exposure
+  double share = 1.0;  // part of the exposure
 };
 
 /// Draws an object with its shape: for each snapshot tiles of what the frame sees of it, finer than

@@ -45,7 +45,7 @@ std::optional<PlanePart> seen_part(const Optics& optics,
                                    const Rotation<TileAxes, CameraFrame>& tile_from_camera,
                                    double margin_px) {
   constexpr int steps = 16;       // along each side
-  constexpr double bulge = 0.02;  // of a curved side between two of them
+  constexpr double bulge = 0.02;  // share of the box that a curved side may bulge between steps
   constexpr double min_z = 0.05;
   const double x0 = -0.5 - margin_px, y0 = -0.5 - margin_px;
   const double wide = optics.columns + 2 * margin_px, high = optics.rows + 2 * margin_px;

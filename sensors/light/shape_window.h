@@ -12,7 +12,7 @@ struct ShapeWindow {
   Rotation<CameraFrame, Body> tile_from_body;  // the tile's axes as those of its own camera
   Vec<CameraFrame> object_m;                   // in those axes
   TileCamera camera;                           // no columns where the frame sees nothing of it
-  double pixel_side_px = 1.0;                  // of the tile's pixel, in the camera's
+  double pixel_side_px = 1.0;  // side of a pixel of the tile, in pixels of the camera
 };
 
 /// `margin_px`: how far beside the frame the object still matters. For a gnomonic camera the tile's

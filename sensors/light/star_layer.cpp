@@ -30,8 +30,8 @@ constexpr std::size_t stars_at_a_time = 512;
 /// small catalogues, one by one.
 constexpr std::size_t least_for_grid = 8192;
 
-/// Of the faintest source that matters, which has ten times a pixel's noise: the paths of stars
-/// that a grid placed may be summed so roughly, in a pixel.
+/// Share of the light of the faintest source that matters, which has ten times a pixel's noise: the
+/// paths of stars that a grid placed may be summed so roughly, in a pixel.
 constexpr double missed_share = 1e-4;
 
 /// The arc of a number, or those of its spectrum where `spread` makes them of it.

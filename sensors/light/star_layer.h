@@ -26,7 +26,7 @@ struct StarTruth {
   double v_mag = 0.0, bv = 0.0;
   double x_px = 0.0, y_px = 0.0;     // centroid of its light in the frame
   double signal_e = 0.0;             // expected electrons deposited in the frame
-  PixelPosition start, middle, end;  // of its trail, also beside the frame
+  PixelPosition start, middle, end;  // places on its trail, also beside the frame
 };
 
 /// The star background: every star of the field with its own place and its own trail, and the

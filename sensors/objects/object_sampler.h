@@ -18,7 +18,7 @@ struct ObjectSample {
   double electrons_per_s = 0.0;  // expected at the detector; 0 when dark or hidden
   double sunlit = 0.0;
   std::optional<SpectrumEnds> ends;      // with dispersion, where there is a pixel
-  double electrons_per_photon_m2 = 0.0;  // of the way from above the atmosphere; 0 when hidden
+  double electrons_per_photon_m2 = 0.0;  // from above the atmosphere; 0 when hidden
 };
 
 /// One instant of the exposure with everything that does not depend on the object.

@@ -17,8 +17,8 @@ namespace dmise {
 struct ObjectShape {
   std::shared_ptr<const FacetLight> at_rest;  // with its panel so
   std::optional<HingedPanel> panel;
-  double radius_m = 0.0;  // of the sphere about its origin that holds it, at any angle of the panel
-  double silhouette_m2 = 0.0;                     // most: its surface, and the disc of the sphere
+  double radius_m = 0.0;       // sphere about its origin that holds it, at any angle of the panel
+  double silhouette_m2 = 0.0;  // most: its surface, and the disc of the sphere
   std::shared_ptr<const GlintField> glints = {};  // null: its light is smooth
 
   /// Its light with the panel turned to the Sun.
@@ -36,7 +36,7 @@ struct ShapePose {
   double range_m = 0.0;
   double sun_distance_au = 1.0;
   std::vector<LightSource> secondary;  // light of Earth and Moon, where the effects are on
-  RngKey glints = {};                  // of the object
+  RngKey glints = {};                  // draws the glints of this object
 };
 
 /// Rings of the Earth's face: for the flux (to 1 % of earthshine) and for pictures (to
@@ -77,7 +77,7 @@ class ObjectShapes {
   double sun_photons() const { return sun_photons_; }
 
  private:
-  std::map<std::uint32_t, ObjectShape> shapes_;  // of the scenario's own objects
+  std::map<std::uint32_t, ObjectShape> shapes_;  // for the scenario's own objects
   std::set<std::uint32_t> own_;                  // their numbers, also of those without a shape
   ObjectModels models_;
   std::map<const ObjectModel*, ObjectShape> of_models_;

@@ -38,11 +38,11 @@ struct RoughPlaces {
   SimTime time;
   Rotation<Gcrs, Teme> gcrs_from_teme;
   std::size_t count = 0;                             // objects of catalogues, the first ones
-  std::vector<double> position_m, velocity_m_per_s;  // of SGP4: all x, all y, all z
+  std::vector<double> position_m, velocity_m_per_s;  // from SGP4: all x, all y, all z
   std::vector<std::uint8_t> code;
-  double interpolation_error_m = 0.0;  // of the states that the exact test uses
+  double interpolation_error_m = 0.0;  // error of the states that the exact test uses
   double longest_s = 0.0;              // between `time` and an exposure's middle
-  std::optional<Shortlist> shortlist;  // of the camera that asks, made at need
+  std::optional<Shortlist> shortlist;  // what this camera may see, made at need
 };
 
 /// Objects of catalogues that `objects_in_field` may find, in any order: all that it finds are

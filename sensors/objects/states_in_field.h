@@ -48,7 +48,7 @@ class StatesInField {
   std::shared_ptr<const PropagatedObjects> objects_;
   SimTime tick_length_;
   ActorStates told_;
-  std::map<Tick, StateInstants> instants_;  // of the last exposure's ticks
+  std::map<Tick, StateInstants> instants_;  // for ticks of the last exposure
   std::optional<RoughPlaces> rough_;
 };
 

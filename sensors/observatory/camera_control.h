@@ -76,7 +76,7 @@ class CameraControl {
   int percent_completed(SimTime now) const;
   /// Until the shutter closes; 0 if it is closed.
   double left_s(SimTime now) const;
-  /// Of the last exposure that has an image; refused before the first.
+  /// The length of the last exposure that has an image; refused before the first.
   double last_exposure_s() const;
   const std::string& last_start_utc() const;
 

@@ -33,14 +33,14 @@ struct Window {
 /// One exposure on command, with all that its frame depends on beside the scenario.
 struct CommandedExposure {
   std::string sensor;
-  std::uint32_t frame = 1;  // of the sensor, counts from 1
+  std::uint32_t frame = 1;  // counts the sensor's frames from 1
   SimTime start, length;
   CommandedPointing pointing;
   Window window;               // which the client took; the frame is whole
   int gain = 0, offset = 0;    // places among those of the camera, which has one of each
-  double temperature_c = 0.0;  // of the detector
+  double temperature_c = 0.0;  // temperature of the detector
   int filter = 0;              // place in the camera's wheel
-  double focus_um = 0.0;       // of the detector from where the camera file has it
+  double focus_um = 0.0;       // way of the detector from where the camera file has it
   bool dark = false;           // behind a closed cover or shutter
 
   FrameTimes times() const { return {frame, start, {start.ns + length.ns / 2}, start + length}; }
@@ -48,7 +48,7 @@ struct CommandedExposure {
 };
 
 inline constexpr double max_commanded_exposure_s = 3600.0, min_commanded_exposure_s = 0.001;
-inline constexpr double max_rate_deg_per_s = 10.0;  // of right ascension and declination
+inline constexpr double max_rate_deg_per_s = 10.0;  // in right ascension and in declination
 inline constexpr int max_bin = 8;
 
 /// One line of night.jsonl, without its end.

@@ -10,8 +10,8 @@
 namespace dmise {
 namespace {
 
-constexpr int longest_travel_um = 5000;    // of small focusers: 5 to 20 mm
-constexpr double widest_travel_px = 64.0;  // of the disc of a point: wider ones take seconds
+constexpr int longest_travel_um = 5000;    // small focusers have 5 to 20 mm
+constexpr double widest_travel_px = 64.0;  // disc of a point: wider ones take seconds
 
 /// Whether frames can be made so far out of focus.
 bool can_blur(const SensorConfig& sensor, int focus_um) {

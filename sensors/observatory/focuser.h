@@ -26,7 +26,7 @@ class Focuser {
   /// [0, max_step].
   void move_to(int position, SimTime now);
   void halt(SimTime now) { drive_.halt_at(position(now), now); }
-  /// Of the detector from where the camera file has it.
+  /// The way of the detector from where the camera file has it.
   double focus_um(SimTime now) const { return step_um * (position(now) - middle_); }
   void need_still(SimTime now) const { drive_.need_still(now); }
   void hold_until(SimTime end) { drive_.hold_until(end); }

@@ -113,7 +113,7 @@ struct Observatory::Station {
   FilterWheel wheel;
   Cover cover;
   WeatherStation weather;
-  const Malfunction* stopped = nullptr;  // of the mount
+  const Malfunction* stopped = nullptr;  // why the mount stands; null: it works
   CommandedPointing stopped_at;
   std::optional<CommandedExposure> exposure;  // whose frame is to be made
   std::uint32_t frames_made = 0;

@@ -54,7 +54,7 @@ inline std::string weather_name(const SensorConfig& sensor) { return sensor.name
 
 struct ObservatorySettings {
   double slew_rate_deg_per_s = 3.0, settle_s = 1.0, readout_s = 0.1;
-  int threads = 1;  // of each sensor
+  int threads = 1;  // for each sensor
 };
 
 /// The telescopes and cameras of a scenario, and what belongs to them, as clients command them.

@@ -25,7 +25,7 @@ class SatellitePath {
  private:
   const Scenario& scenario_;
   const SensorConfig& sensor_;
-  ObjectPopulation population_;  // of one
+  ObjectPopulation population_;  // one object
   mutable Threads threads_;
   StateSource states_;
   WorldSource worlds_;

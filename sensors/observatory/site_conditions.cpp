@@ -74,7 +74,7 @@ SiteConditions site_conditions(const SensorConfig& sensor, const Weather& air, c
   const double zenith_s10 = s10_of(sky, {0.0, 0.0, 1.0});
   if (zenith_s10 > 0.0) c.sky_mag_per_arcsec2 = mag_per_arcsec2_of_s10(zenith_s10);
   c.sky_lux = sky_lux(sky);
-  // Of a long exposure: 0.976 wavelength / r0 (Dierickx 1992, J. Mod. Opt. 39, 569).
+  // A long exposure has a FWHM of 0.976 wavelength / r0 (Dierickx 1992, J. Mod. Opt. 39, 569).
   if (const auto r0 = r0_m(sensor)) c.star_fwhm_arcsec = 0.976 * seeing_wavelength_m / *r0 / arcsec;
   if (sensor.atmosphere.turbulence)
     c.wind_m_per_s = sensor.atmosphere.turbulence->wind.ground_m_per_s;

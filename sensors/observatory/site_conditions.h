@@ -15,8 +15,8 @@ struct SiteConditions {
   double dew_point_c = 0.0;
   double cloud_cover_percent = 0.0;
   std::optional<double> sky_mag_per_arcsec2 = {};  // V, at the zenith; none: it is black
-  double sky_lux = 0.0;                            // of the sky without Sun and Moon, on the ground
-  std::optional<double> star_fwhm_arcsec = {};     // of the air at 0.5 um, in a long exposure
+  double sky_lux = 0.0;                            // on the ground, by the sky without Sun and Moon
+  std::optional<double> star_fwhm_arcsec = {};     // made by the air at 0.5 um, in a long exposure
   std::optional<double> wind_m_per_s = {};         // on the ground
 };
 

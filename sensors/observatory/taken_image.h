@@ -9,9 +9,9 @@ namespace dmise {
 
 /// An image as its client takes it.
 struct TakenImage {
-  CountImage counts;  // of the window
+  CountImage counts;  // pixels of the window
   Window window;
-  FrameHeader header;  // of the whole frame's file
+  FrameHeader header;  // as in the file of the whole frame
 };
 
 /// Whether the window is all of a frame of this many pixels.

@@ -415,7 +415,7 @@ CommandedPointing Telescope::standing_at(const Vec<Enu>& axis) const {
           .roll_deg = north_roll_deg(axis) + flip_deg()};
 }
 
-/// Of what moves among the stars, with the mean rates of the exposure.
+/// The pointing at what moves among the stars, with the mean rates of the exposure.
 CommandedPointing Telescope::along_path(SimTime now, SimTime end) const {
   const auto axis_at = [&](SimTime t) { return equatorial_of(sky_.gcrs(on_path(t), t)); };
   const SimTime middle{now.ns + (end.ns - now.ns) / 2};

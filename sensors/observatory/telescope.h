@@ -8,14 +8,14 @@
 
 namespace dmise {
 
-inline constexpr double sidereal_deg_per_s = 360.0 / 86164.0905;  // of the stars about the pole
+inline constexpr double sidereal_deg_per_s = 360.0 / 86164.0905;  // turn of the stars
 
 struct TelescopeSettings {
   double latitude_deg = 0.0;         // geodetic, of the site
   double slew_rate_deg_per_s = 3.0;  // > 0, along a great circle
   double settle_s = 1.0;             // after a slew
   double min_elevation_deg = 0.0;    // below it the telescope does not go
-  double roll_deg = 0.0;             // of the image: its up from north towards east
+  double roll_deg = 0.0;             // up of the image, from north towards east
 };
 
 /// Numbers are those of ASCOM's PierSide.
@@ -71,7 +71,7 @@ class Telescope {
   PierSide destination_side(const Equatorial& icrs, SimTime now);
   double ra_rate_deg_per_s() const { return ra_rate_; }
   double dec_rate_deg_per_s() const { return dec_rate_; }
-  double axis_rate_deg_per_s(int axis) const { return axis_rates_[axis]; }  // of `move_axis`
+  double axis_rate_deg_per_s(int axis) const { return axis_rates_[axis]; }  // set by `move_axis`
   double ra_guide_rate_deg_per_s() const { return ra_guide_; }
   double dec_guide_rate_deg_per_s() const { return dec_guide_; }
   const TelescopeSettings& settings() const { return settings_; }
@@ -97,7 +97,7 @@ class Telescope {
   };
   struct Slew {
     Vec<Enu> from;
-    SimTime start, arrival, end;  // of the motion, and with settling
+    SimTime start, arrival, end;  // motion from start to arrival; the end is after settling
     bool then_stands = false;     // where the path is at its end
   };
   struct Pulse {

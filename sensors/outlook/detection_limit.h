@@ -10,7 +10,7 @@ namespace dmise {
 /// Faintest detectable light.
 struct DetectionLimit {
   double point_e = 0.0;  // electrons of a point in the exposure, at the limiting magnitude
-  std::optional<double> found_point_e;  // of one distinguished from stars in half of all frames
+  std::optional<double> found_point_e;  // point told from stars in half of all frames
   double streak_e_per_px = 0.0;         // electrons per pixel of length of a streak ...
   double streak_px = 0.0;               // ... of this length
 };

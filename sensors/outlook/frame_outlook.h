@@ -29,7 +29,7 @@ struct FrameOutlook {
   SimTime middle;
   std::optional<double> boresight_elevation_rad, sun_elevation_rad, moon_elevation_rad,
       target_elevation_rad;
-  std::optional<double> limb_angle_rad;  // of the boresight above the Earth's limb; in orbit
+  std::optional<double> limb_angle_rad;  // boresight above the Earth's limb; in orbit
   bool boresight_hidden = false;         // by the Earth
   bool target_hidden = false;
   bool sun_in_field = false;
@@ -44,7 +44,7 @@ struct FrameOutlook {
   // Empty for a saturated or hidden sky; `found_point_v_mag` also if stars do not trail,
   // `streak_limit_v_mag` also for streaks that are too short.
   std::optional<double> point_limit_v_mag, found_point_v_mag, streak_limit_v_mag;
-  /// Of a point at `near_range_m`, which is a disc of `near_disc_px`; 0: as sharp as stars.
+  /// The disc of a point at `near_range_m` has a diameter of `near_disc_px`; 0: as sharp as stars.
   double near_disc_px = 0.0;
   std::optional<double> near_limit_v_mag;
   std::optional<std::uint32_t> stars, objects;  // with light in the frame; stars of the catalogue
@@ -67,7 +67,7 @@ struct OutlookScene {
   std::shared_ptr<const StarMap> stars;
   double faintest_star_mag = 0.0;
   const ObjectShapes* shapes = nullptr;
-  const ExposurePlanner* planner = nullptr;  // of the sensor, for the limit of synthetic stars
+  const ExposurePlanner* planner = nullptr;  // the sensor's, for the limit of synthetic stars
   double psf_sigma_px = 0.0;                 // including the pixel
   bool count_objects = true;
 };

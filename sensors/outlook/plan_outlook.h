@@ -13,7 +13,7 @@ namespace dmise {
 /// Frames of a sensor that have one plan, and the plan of the first of them.
 struct PlanSpan {
   std::uint32_t first_frame = 1, last_frame = 1;
-  SimTime start, end;  // of the first and the last exposure
+  SimTime start, end;  // start of the first exposure, end of the last
   EffectPlan plan;
   bool shutter_closed = false;
 };

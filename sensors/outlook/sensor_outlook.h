@@ -25,18 +25,18 @@ struct SensorOutlook {
   std::string sensor;
   CameraFigures camera;
   bool on_ground = true;
-  std::string target;   // of the pointing; empty: none
+  std::string target;   // what the pointing follows; empty: nothing
   bool cued = false;    // examined as it is parked
-  std::string by_node;  // of its platform or target, which a node moves or turns: not examined
+  std::string by_node;  // node that moves its platform or target: not examined
   double min_limb_angle_rad = 0.0;
   std::uint32_t frames_in_run = 0;
   ExclusionAction exclusion_action = ExclusionAction::flag;
   std::uint32_t looked_for_exclusion = 0;  // frames examined: all, or evenly spaced ones
   std::uint32_t excluded_frames = 0;       // in which at least one body is too near
-  std::vector<ExcludedFrames> excluded;    // of each body that the camera has a limit for
+  std::vector<ExcludedFrames> excluded;    // one per body that the camera has a limit for
   bool objects_counted = true;             // false: too many objects
   std::vector<FrameOutlook> frames;        // examined: the first, the last, and evenly spaced ones
-  std::optional<FrameOutlook> mid_run;     // of the frame in the middle of the run, for its limits
+  std::optional<FrameOutlook> mid_run;     // frame in the middle of the run, for its limits
   std::vector<std::string> warnings;       // one line each, with the sensor's place in the scenario
 };
 

@@ -10,11 +10,11 @@ namespace dmise {
 /// E = noise sqrt(A) / (area x transmission x quantum efficiency x exposure), with A the inverse of
 /// the sum of squares of its light's shares in the pixels.
 struct ThermalLimit {
-  double background_e_per_s = 0.0;     // of a pixel, with dark current
+  double background_e_per_s = 0.0;     // electrons in a pixel, with dark current
   double fills_in_s = 0.0;             // a pixel, by the background alone
   double nefd_photons_per_s_m2 = 0.0;  // in the band
   double nefd_w_per_m2 = 0.0;          // flux at the band's centre
-  double nefd_jy = 0.0;                // of a source with as much at every frequency
+  double nefd_jy = 0.0;                // for a source with as much at every frequency
   double nefd_ab_mag = 0.0;
 };
 

@@ -94,7 +94,7 @@ AirFacts air_facts(const SensorConfig& sensor) {
   return air;
 }
 
-/// Of a blur that changes over the field, and of a focus that drifts.
+/// Facts about a blur that changes over the field, and about a focus that drifts.
 void add_blur_facts(const Optics& optics, double wavelength_m, PlanFacts& f) {
   const PointSpread& s = optics.spread;
   if (f.scene.blur_varies) {

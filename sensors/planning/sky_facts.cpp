@@ -106,7 +106,7 @@ double cloud_detail_px(const View& view, double lowest_rad, double pixel_rad) {
   const auto& clouds = view.sensor().weather.clouds;
   const auto* patches = clouds ? std::get_if<PatchyClouds>(&*clouds) : nullptr;
   if (!patches || !view.sensor().effects.has(CloudCover::facts)) return unbounded;
-  constexpr double finest = 1.0 / 16.0;  // of five octaves
+  constexpr double finest = 1.0 / 16.0;  // size of the last of five octaves, the first being 1
   const double sine = std::max(0.02, std::sin(lowest_rad));
   return finest * patches->patch_m / patches->height_m * sine * sine / pixel_rad;
 }

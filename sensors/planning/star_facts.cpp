@@ -195,7 +195,7 @@ void StarFacts::add_stars(const View& view, PlanFacts& f) const {
 /// A star may be as bright in the band as any of its magnitude.
 void StarFacts::add_synthetic(const SyntheticStars& synthetic, const Vec<Gcrs>& axis,
                               double seen_rad, double electrons, PlanFacts& f) const {
-  double brightest_colour = 0.0;  // of synthetic ones
+  double brightest_colour = 0.0;  // light of a star in the synthetic colour with the most
   for (const double bv : {min_bv, double(default_star_bv), greatest_bv})
     brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
   for (std::size_t m = 0; m < star_limits; ++m) {

@@ -22,10 +22,10 @@ struct PositionRow {
   std::string time_utc;  // nine decimals
   std::string kind;      // camera, object, sun, moon
   std::string name;
-  std::uint32_t catalogue_number = 0;        // of an object
+  std::uint32_t catalogue_number = 0;        // only objects have one
   Vec<Gcrs> position_m;                      // geocentric
   std::optional<Vec<Gcrs>> slope_m_per_s;    // the derivative of the position
-  std::optional<Quaternion> gcrs_from_axes;  // of a camera's or a body's axes; w >= 0
+  std::optional<Quaternion> gcrs_from_axes;  // axes of a camera or a body; w >= 0
   std::optional<EnuPlace> enu;               // what the tables have instead of GCRS
 };
 

@@ -250,7 +250,7 @@ class GlRenderer final : public Renderer {
   GlTextures textures_;
   Stage plain_, textured_;
   struct Range {
-    std::size_t material, begin, count;  // of indices
+    std::size_t material, begin, count;  // first index and number of indices of a material
     bool underlay;
   };
   std::vector<Range> ranges_;

@@ -15,14 +15,14 @@ namespace dmise {
 /// top).
 struct TileCamera {
   double focal_px = 1.0;
-  double principal_x_px = 0.0, principal_y_px = 0.0;  // of the camera; pixel centres are integers
+  double principal_x_px = 0.0, principal_y_px = 0.0;  // in the camera; pixel centres are integers
   int left = 0, top = 0;
   int columns = 0, rows = 0;
 };
 
 /// Light and reflectance of a mesh in one spectral band.
 struct TileBand {
-  const FacetSet* facets = nullptr;  // of the mesh
+  const FacetSet* facets = nullptr;  // facets of the mesh
   double sun_irradiance = 1.0;       // at the object, in the unit of radiance times sr
 };
 

@@ -56,7 +56,7 @@ flat in vec3 slope_u;
 flat in vec3 slope_v;
 layout(binding = 0) uniform sampler2D colours;
 layout(binding = 1) uniform sampler2D slopes;
-uniform mat3 weights;  // of red, green and blue in each band
+uniform mat3 weights;  // share of red, green and blue in each band
 #else
 #define facing normal
 #define diffuse_rgb diffuse.rgb

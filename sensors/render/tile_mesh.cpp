@@ -112,7 +112,7 @@ class Builder {
     return v;
   }
 
-  using Places = std::array<FacetPiece::Point, 3>;  // of corners in their facet's coordinates
+  using Places = std::array<FacetPiece::Point, 3>;  // corners, in coordinates of their facet
 
   void add(const TileVertex& surface, std::size_t f, const SampleCount::Triangle& p,
            const Places& at) {
@@ -290,8 +290,8 @@ class Builder {
   std::size_t first_;
   int bands_;
   bool emission_;
-  bool specks_;           // of light of the source
-  bool emission_specks_;  // of thermal emission
+  bool specks_;           // light of the source goes into specks where samples are few
+  bool emission_specks_;  // so does thermal emission
   bool textured_ = false;
   glm::dmat3 camera_from_body_;
   ClipSpace clip_;

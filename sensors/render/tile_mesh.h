@@ -13,9 +13,9 @@ struct TileVertex {
   glm::vec4 clip;      // in the whole tile; depth 1 at the nearest corner, 0 at the farthest
   glm::vec3 view;      // to the camera, any length
   glm::vec3 normal;    // unit, camera axes
-  glm::vec4 diffuse;   // of up to three bands, b^2
-  glm::vec4 specular;  // of up to three bands, e^2
-  glm::vec4 emitted;   // of up to three bands, exponent of Phong's lobe or -1
+  glm::vec4 diffuse;   // b^2 for up to three bands
+  glm::vec4 specular;  // e^2 for up to three bands
+  glm::vec4 emitted;   // up to three bands, then the exponent of Phong's lobe or -1
 };
 static_assert(sizeof(TileVertex) == 22 * sizeof(float));  // as OpenGL's attributes are declared
 
@@ -33,7 +33,7 @@ static_assert(sizeof(TextureVertex) == 10 * sizeof(float));
 struct TileMesh {
   std::vector<TileVertex> vertices;
   struct Bounds {
-    float x0, y0, x1, y1;  // of the tile [px], pixel centres are integers
+    float x0, y0, x1, y1;  // corners in the tile [px], pixel centres are integers
   };
   std::vector<Bounds> bounds;           // one per triangle, of three vertices
   std::vector<TextureVertex> texture;   // as `vertices`; empty when no material has a picture
@@ -43,8 +43,8 @@ struct TileMesh {
   /// Shining parts of facets with too few samples: drawn dark, their light is added to the pixel of
   /// their centre.
   struct Speck {
-    glm::vec2 place_px;  // of the tile
-    glm::vec3 light;     // of up to three bands, radiance x pixels
+    glm::vec2 place_px;  // where it is in the tile
+    glm::vec3 light;     // radiance x pixels for up to three bands
   };
   std::vector<Speck> specks;
 };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double step_rad = 2.0 * deg;  // that the axis turns between two times
 constexpr int fewest_steps = 4, max_steps = 4096;
-constexpr double found_within = 1e-5;  // of two steps
+constexpr double found_within = 1e-5;  // part of the two steps in which the least angle is sought
 
 /// Whether no part of a disc is seen past the Earth.
 bool is_hidden(const View& view, const SeenBody& body, SimTime t) {

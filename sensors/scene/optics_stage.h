@@ -72,11 +72,11 @@ class OpticsStage {
 
   Optics optics_;
   bool blurs_;              // the effect psf is on
-  int border_px_;           // of reference pixels, which collect no light
+  int border_px_;           // width of the reference pixels, which collect no light
   bool drifts_;             // its focus
-  double defocus_m_ = 0.0;  // of the frame
+  double defocus_m_ = 0.0;  // in this frame
   PsfPlan plan_;
-  PsfTable table_;  // of deposits: the Gaussian's, or the grid's
+  PsfTable table_;  // for deposits: the Gaussian's, or the grid's
   Threads& threads_;
   GlEvaluator* evaluator_ = nullptr;  // null: arcs are deposited
   std::unique_ptr<PsfModel> model_;
@@ -84,7 +84,7 @@ class OpticsStage {
   std::unique_ptr<DirectBlur> direct_;
   std::optional<DefocusScale> scale_;          // none: nothing is blurred
   std::unique_ptr<DefocusBlur> out_of_focus_;  // null: nothing was yet
-  PsfKernel central_;                          // of the boresight
+  PsfKernel central_;                          // at the boresight
   bool direct_ready_ = false;                  // `direct_` holds `central_`
   bool has_kernels_ = false;
   double limit_e_ = 0.0, bright_e_ = 0.0, exposure_start_s_ = 0.0, exposure_s_ = 0.0;

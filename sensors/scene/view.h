@@ -64,7 +64,7 @@ class View {
   const SiteState* air() const { return air_; }
   /// The air that refracts over a ground sensor.
   const Weather& weather() const { return weather_; }
-  /// Of a ground sensor, whether its effects have it or not.
+  /// The refraction over a ground sensor, whether its effects have it or not.
   const Refraction& refraction() const { return refraction_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
   /// Returns where the camera's axis points.
@@ -102,7 +102,7 @@ class View {
   /// Light that reaches a pixel, relative to the boresight's: (0, 1].
   double illumination(PixelPosition pixel) const;
 
-  /// Of moonlight on objects, `moonlight_colour` of the band; 1 where the effect is off.
+  /// The colour of moonlight on objects in the band; 1 where the effect is off.
   double moonlight_colour() const { return moonlight_colour_; }
 
  private:
@@ -116,8 +116,8 @@ class View {
   RollingShutter shutter_;
   const World& world_;
   std::uint64_t seed_;
-  EnvironmentState environment_;  // of mid exposure
-  const SiteState* air_;          // of mid exposure
+  EnvironmentState environment_;  // at mid exposure
+  const SiteState* air_;          // at mid exposure
   std::optional<Site> site_;
   Vec<Itrs> site_m_;
   std::optional<std::size_t> platform_, target_;

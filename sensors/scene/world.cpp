@@ -170,7 +170,7 @@ namespace {
 /// Angular speed of the interpolated attitude, by a difference over less than 0.1 rad.
 double rate_rad_per_s(double u, double tick_s, const AttitudeState& start,
                       const AttitudeState& end) {
-  const double max_rad =  // of a tick
+  const double max_rad =  // bound on the turn within one tick
       20.0 + tick_s * (3.0 * norm(start.rate_rad_per_s) + norm(end.rate_rad_per_s));
   const double du = 0.05 / max_rad;
   const auto at = [&](double part) {
@@ -182,7 +182,7 @@ double rate_rad_per_s(double u, double tick_s, const AttitudeState& start,
 }  // namespace
 
 double World::turn_rad(std::size_t i, SimTime start, SimTime end) const {
-  constexpr int steps = 8;  // of one tick, within which the rate is smooth
+  constexpr int steps = 8;  // parts of one tick, within which the rate is smooth
   const auto k = place(i);
   double turn = 0.0;
   for (std::size_t tick = 1; k && tick < states_.size(); ++tick) {

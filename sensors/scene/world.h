@@ -89,7 +89,7 @@ class World {
   struct Around {
     const ObjectStates* before;
     const ObjectStates* after;
-    std::size_t index = 0;  // of `before` in `states_`
+    std::size_t index = 0;  // place of `before` in `states_`
   };
   Around around(SimTime t) const;
   /// Place of object `i` in the states; nothing if its states are not known.

@@ -28,7 +28,7 @@ struct StarTrail {
   StarKind kind = StarKind::most;
   Vec<Gcrs> middle;                             // apparent direction in mid exposure
   std::array<PixelPosition, 3> pixel;           // start, middle, end
-  std::optional<double> airmass, illumination;  // of its middle, if they are known already
+  std::optional<double> airmass, illumination;  // in its middle pixel, if they are known already
   std::optional<Vec<Gcrs>> astrometric;         // where it is no catalogue's or a grid placed it
 };
 
@@ -52,7 +52,7 @@ struct StarExposure {
   std::array<Vec<Gcrs>, 3> up = {view.up(instants[0]), view.up(instants[1]), view.up(instants[2])};
   std::optional<Spectra> spectra = Spectra::over(view);
   std::optional<StarPathGrid> grid{};
-  VariableTime variable_time = time_of(view);  // of mid exposure
+  VariableTime variable_time = time_of(view);  // the time at mid exposure
 
   /// Trails of those that the projection can image throughout the exposure.
   std::vector<StarTrail> trails(std::span<const std::uint32_t> which) const;

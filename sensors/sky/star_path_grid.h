@@ -18,7 +18,7 @@ struct StarPath {
   std::array<PixelPosition, 3> pixel;  // start, middle, end
   Vec<Gcrs> middle;                    // apparent direction in mid exposure
   double airmass = 1.0;                // 1 in space
-  double illumination = 1.0;           // of the middle pixel
+  double illumination = 1.0;           // in the middle pixel
 };
 
 /// Paths of many stars of one exposure. What moves a star from its astrometric place to a pixel
@@ -58,7 +58,7 @@ class StarPathGrid {
   const Optics* optics_;
   Rotation<CameraFrame, Gcrs> camera_;
   double spacing_px_ = 64.0, left_ = 0.0, top_ = 0.0;
-  std::size_t columns_ = 0, rows_ = 0;  // of patches, each of two spacings
+  std::size_t columns_ = 0, rows_ = 0;  // patches, each two spacings wide
   std::vector<Node> nodes_;
   std::vector<char> has_node_, good_;
 };

@@ -25,9 +25,9 @@ struct SiteChoice {
   std::vector<double> detected;    // objects a night with the first 1, 2, .. sites of greedy search
   double greedy = 0.0;             // objects a night: after greedy search
   double best = 0.0;               // and after moves
-  double none = 0.0;               // of the sensors that are there in any case
+  double none = 0.0;               // with only the sensors that are there in any case
   double bound = 0.0;              // no choice of as many sites detects more
-  int moves = 0;                   // of single sites that helped
+  int moves = 0;                   // exchanges of a single site that helped
 };
 
 /// Chooses `count` (1..sites) of the candidates for the most objects detected a night: greedily,
@@ -35,7 +35,7 @@ struct SiteChoice {
 /// the set of sites, so greedy search gains at least 1 - 1/e of what the best choice gains
 /// (Nemhauser, Wolsey & Fisher 1978, Mathematical Programming 14, 265), and no choice has more than
 /// any set's value plus the `count` greatest gains of single sites on top of it: `bound` is the
-/// least of these over the sets met. Of equal candidates the first is taken.
+/// least of these over the sets met. Among equal candidates the first is taken.
 SiteChoice choose_sites(const SiteMisses& misses, std::size_t count);
 
 /// Share of the best choice's gain that greedy search reaches in any case: 1 - 1/e.

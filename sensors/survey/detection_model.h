@@ -7,8 +7,8 @@ namespace dmise {
 
 /// A trail as the chain's detection is expected to meet it.
 struct ExpectedTrail {
-  double snr = 0.0;         // of the ideal matched filter (`matched_filter_snr`)
-  double length_px = 0.0;   // of its lit part in the frame
+  double snr = 0.0;         // after the ideal matched filter (`matched_filter_snr`)
+  double length_px = 0.0;   // lit part in the frame
   double star_px = 0.0;     // length of a star's trail there
   double unlike_px = 0.0;   // difference of the trail from a star's
   bool star_known = false;  // the catalogue of stars would have a star of its light
@@ -22,7 +22,7 @@ struct DetectionModel {
   struct Node {
     double px = 0.0;
     double half_snr = 6.0;  // at which half of what nothing hides is found
-    double spread = 0.15;   // of its logarithm, > 0
+    double spread = 0.15;   // width in ln(SNR), > 0
 
     bool operator==(const Node&) const = default;
   };
@@ -38,13 +38,13 @@ struct DetectionModel {
   Nodes far;
   // By `shape_difference_px`, unless the catalogue would have such stars; none: it does not matter.
   Nodes shape;
-  // Of bright sources that are found, (0, 1]: trails of `row_px` or more and points, among stars
-  // that trail; points among those of `far_px`; and anything among round ones.
+  // Share of bright sources that are found, (0, 1]: trails of `row_px` or more and points, among
+  // stars that trail; points among those of `far_px`; and anything among round ones.
   double share = 1.0, share_points = 1.0, share_far = 1.0, share_round = 1.0;
 
   static constexpr double round_px = 0.4, trailed_px = 2.4, long_px = 6.0,
-                          far_px = 12.0;                  // of stars' trails
-  static constexpr double point_px = 1.0, row_px = 14.0;  // of objects' trails
+                          far_px = 12.0;                  // trails of stars
+  static constexpr double point_px = 1.0, row_px = 14.0;  // trails of objects
   /// All nodes.
   std::array<Nodes*, 5> nodes() { return {&trailed, &round, &round_known, &far, &shape}; }
   std::array<const Nodes*, 5> nodes() const {

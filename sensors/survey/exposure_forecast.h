@@ -16,17 +16,17 @@ namespace dmise {
 /// An object with light in one exposure, as it is expected without rendering.
 struct ExpectedDetection {
   std::uint32_t object = 0;  // index in the population
-  double signal_e = 0.0;     // of its light in the frame
-  double length_px = 0.0;    // of its lit trail in the frame
-  double star_px = 0.0;      // of the trail of a star there
+  double signal_e = 0.0;     // its light in the frame
+  double length_px = 0.0;    // its lit trail in the frame
+  double star_px = 0.0;      // trail of a star there
   double unlike_px = 0.0;    // difference of both trails
   bool star_known = false;   // the catalogue would have a star of its light
-  PixelPosition centroid;    // of that light
-  // Of a pixel there, without the object's own; of the darkest sky for what is too faint even
+  PixelPosition centroid;    // weighted by that light
+  // Noise of a pixel there, without the object's own; in the darkest sky for what is too faint even
   // there.
   double noise_e = 0.0;
-  double snr = 0.0;                                // of the ideal matched filter
-  double probability = 0.0;                        // of detection
+  double snr = 0.0;                                // after the ideal matched filter
+  double probability = 0.0;                        // that it is detected
   double latitude_rad = 0.0, longitude_rad = 0.0;  // geocentric, under it in mid exposure
 
   ExpectedTrail trail() const { return {snr, length_px, star_px, unlike_px, star_known}; }

@@ -29,7 +29,7 @@ inline constexpr double pass_gap_s = 600.0;
 /// A night is a day of the run, counted from its start.
 inline constexpr std::int64_t night_ns = 86'400'000'000'000;
 inline int night_of(SimTime t) { return int(t.ns / night_ns); }
-/// Of a run, the last perhaps shorter.
+/// How many nights a run has, the last perhaps shorter.
 int nights_of(SimTime duration);
 
 /// What is expected in one exposure.
@@ -45,7 +45,7 @@ struct SurveyExposure {
 
 /// A cell of the map: 5 deg of longitude and latitude under the objects, of one shell.
 struct MapCell {
-  std::uint64_t looks = 0;     // of objects with light in an exposure
+  std::uint64_t looks = 0;     // objects with light, summed over the exposures
   std::uint64_t expected = 0;  // detections, in units of 2^-20
 
   bool operator==(const MapCell&) const = default;
@@ -59,8 +59,8 @@ using MapCells = std::map<std::array<std::uint16_t, 3>, MapCell>;
 struct SensorSurvey {
   std::string sensor;
   std::uint32_t frames = 0;               // in the run
-  std::uint32_t without_state = 0;        // of them, as platform or target has none
-  std::uint32_t closed = 0;               // of the exposures, with the shutter closed
+  std::uint32_t without_state = 0;        // left out, as platform or target has none
+  std::uint32_t closed = 0;               // exposures with the shutter closed
   std::vector<SurveyExposure> exposures;  // at night, in orbit all
   std::vector<SurveyPass> passes;         // by object, then time
   MapCells map;

@@ -10,7 +10,7 @@ namespace dmise {
 /// A class of orbits by which a survey counts.
 struct Shell {
   std::string name;         // "600-800 km", "MEO", ...
-  std::size_t objects = 0;  // of the population
+  std::size_t objects = 0;  // how many objects of the population are in it
 };
 
 /// The shells of a population: bands of mean altitude of low orbits (a period below 127 min), then

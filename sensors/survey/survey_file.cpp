@@ -81,7 +81,7 @@ class Reader {
   std::string_view rest_;
 };
 
-/// Of the tables of a survey.
+/// The digest of a survey's tables.
 std::string digest_of(const std::string& exposures, const std::string& map,
                       const std::string& passes) {
   Sha256 digest;

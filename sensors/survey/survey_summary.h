@@ -51,7 +51,7 @@ SurveySummary summarise_survey(const std::vector<SensorSurvey>& surveys, const S
 
 /// Candidates for a choice of sites: what is at one place of the ground.
 struct CandidateSite {
-  std::string name;                  // of its first sensor
+  std::string name;                  // name of its first sensor
   std::vector<std::size_t> sensors;  // indices
 };
 std::vector<CandidateSite> candidate_sites(const std::vector<SensorConfig>& sensors);

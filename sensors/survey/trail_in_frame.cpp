@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-constexpr int pieces = 16;  // of each parabola
+constexpr int pieces = 16;  // steps along each parabola
 
 double on_parabola(double a, double m, double b, double u) {
   return a * (1 - u) * (1 - 2 * u) + m * 4 * u * (1 - u) + b * u * (2 * u - 1);

@@ -8,9 +8,9 @@ namespace dmise {
 
 /// The part of an object's trail that is in the frame and lit.
 struct TrailInFrame {
-  double signal_e = 0.0;  // of the light in it
+  double signal_e = 0.0;  // light that is in it
   double length_px = 0.0;
-  PixelPosition centroid;  // of the light; the frame's corner without any
+  PixelPosition centroid;  // weighted by the light; the frame's corner without any
 };
 
 /// `samples`: an odd number, at even times from the start to the end of an exposure of `seconds`;

@@ -110,7 +110,7 @@ TEST_F(FrameErrors, BackgroundIsMeasuredInItsNoise) {
   EXPECT_NEAR(error.largest.noise, std::sqrt(1.0 + 0.3 * noise_e / variance) - 1.0, 1e-4);
 }
 
-/// The same star, blurred by diffraction.
+/// The star of `FrameErrors`, blurred by diffraction.
 class FrameErrorsOfABlur : public FrameErrors, public testing::WithParamInterface<const char*> {
  protected:
   FrameErrorsOfABlur()

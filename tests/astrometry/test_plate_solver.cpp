@@ -130,7 +130,7 @@ TEST(PlateSolver, FindsTheDistortionOfALens) {
   EXPECT_NEAR(blind.fit.rms_px, sigma_px * std::sqrt(2.0), 0.02);
 }
 
-// The same NEES as of the fit alone, by the whole search: unknowns are chosen by the stars.
+// The whole search has the NEES of the fit alone, too: unknowns are chosen by the stars.
 TEST(PlateSolver, TellsItsErrors) {
   const PlateSky sky = test::sky_of(test::kstars());
   double sum = 0.0;
@@ -184,8 +184,8 @@ SeenPlate distorted_plate(const PlateSky& sky, double corner_px, std::size_t sta
   return p;
 }
 
-// Of 15 stars, in the whole frame or in its middle alone, through lenses that depart by nothing to
-// 6 px in the corners, on a grid of places over the frame.
+// Plates of 15 stars, in the whole frame or in its middle alone, through lenses that depart by
+// nothing to 6 px in the corners, on a grid of places over the frame.
 struct StatedErrors {
   int places = 0, plates = 0,
       beyond = 0;                     // beyond: plates with a place off by what one in 10,000 has
@@ -195,7 +195,7 @@ struct StatedErrors {
   double sigma_px() const { return std::sqrt(sigma2 / places); }
 };
 
-/// Of 25 places all over each of the plates.
+/// The errors at 25 places all over each of the plates.
 StatedErrors stated_errors(const PlateSky& sky, double corner_px, std::size_t stars, double within,
                            unsigned seeds) {
   StatedErrors all;

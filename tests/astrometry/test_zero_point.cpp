@@ -37,7 +37,7 @@ TEST(ZeroPoint, ItsErrorsAreAsStated) {
     sum[1] += std::pow((z->colour_term - 0.12) / z->sigma(1), 2);
     sum[2] += std::pow((z->extinction_mag_per_airmass - 0.21) / z->sigma(2), 2);
   }
-  // Of one unknown over 300 frames: 1 +- 0.08.
+  // The mean square of one unknown over 300 frames is 1 +- 0.08.
   for (const double s : sum) {
     EXPECT_GT(s / frames, 0.75);
     EXPECT_LT(s / frames, 1.25);

@@ -14,7 +14,7 @@ struct FileVersions : testing::Test {
   ~FileVersions() override { std::filesystem::remove(path_); }
 
   void write(const char* text) const { std::ofstream(path_) << text; }
-  /// Of a file that was written a while ago.
+  /// The version of a file that was written a while ago.
   std::optional<FileVersion> settled() const {
     while (!file_version(path_)) std::this_thread::yield();
     return file_version(path_);

@@ -46,7 +46,7 @@ struct CalibratedDetection : testing::Test {
     frame.add_streak(700, 500, 80, 0.4, 20000);
     return frame.expose();
   }
-  /// The same direction as by the true header, and at the satellite's pixel.
+  /// The satellite is where it is by the true header, and at its pixel.
   void expect_satellite(const DetectionResult& result) {
     const auto right = detect(drawn(1.0), truth, {}, threads);
     ASSERT_EQ(right.detections.size(), 1u);

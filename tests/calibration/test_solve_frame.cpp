@@ -362,7 +362,7 @@ TEST(SolveFrame, ZeroPointsAreWithoutTheLensThatTheHeaderHas) {
   EXPECT_GT(std::abs(lens.zero_point->zero_point_mag - 12.0), 0.1);  // taken for extinction
 }
 
-// Of 14 deg near the zenith: the zero point then holds the air.
+// The zero point of a frame of 14 deg near the zenith holds the air.
 TEST(SolveFrame, ExtinctionThatIsNotFittedStaysUnknown) {
   FrameHeader h;
   h.unknown.add(FrameFact::extinction);

@@ -24,7 +24,7 @@ from dmise.datasets import open_dataset  # noqa: E402
 
 EXAMPLES = ROOT / "clients/python/examples"
 sys.path.insert(0, str(EXAMPLES))
-os.environ["PYTHONPATH"] = PACKAGE  # of workers
+os.environ["PYTHONPATH"] = PACKAGE  # workers find the package there
 SEEDS = range(1, 7)
 
 

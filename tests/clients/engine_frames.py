@@ -98,8 +98,8 @@ class Frames(NightRun):
         self.assertGreater(found, 0)
 
     def test_stars_trail_as_the_earth_turns(self):
-        """Of a camera at rest, against astropy's world coordinates: 0.03 px, for the pole precesses; of one that
-        follows the stars not at all."""
+        """A camera at rest, against astropy's world coordinates: 0.03 px, for the pole precesses; behind one that
+        follows the stars they stand still."""
         for sensor, turns in (("west", 1), ("east", 0)):
             frame = next(iter(dmise.Simulation(NIGHT).frames(sensor)))
             middle = np.array([frame.header["NAXIS1"] - 1, frame.header["NAXIS2"] - 1]) / 2

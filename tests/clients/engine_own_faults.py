@@ -157,7 +157,7 @@ class Faults(OwnModelCase):
             with self.assertRaisesRegex(dmise.ScenarioError, "nodes: no node has this name, got (5|None)|is not given"):
                 dmise.Simulation(self.write(good), nodes=given)
         with self.assertRaises(dmise.ScenarioError):
-            dmise.engine.core.Simulation.drawn_of_file(str(self.write(good)), 1)  # of dmise.inject
+            dmise.engine.core.Simulation.drawn_of_file(str(self.write(good)), 1)  # `dmise.inject` draws by it
 
 
 class Digests(OwnModelCase):

@@ -27,7 +27,7 @@ from package import PACKAGE, ROOT, SANITIZED, resident_mb  # noqa: E402
 
 class Actors(OwnModelCase):
     def test_frames_are_those_of_a_run(self):
-        """Of several sensors, one of them aboard what the model moves, and of models with and without a memory."""
+        """Several sensors, one of them aboard what the model moves, and models with and without a memory."""
         for model, options in (("orbit", {}), ("orbit", {"albedo": 0.9}), ("Walk", {})):
             path = self.write(self.node(model, **options))
             simulation = dmise.Simulation(path, nodes={"gnc": getattr(own_models, model)})

@@ -20,7 +20,7 @@ if not list((ROOT / "build/python/dmise").glob("_engine.*.so")):
     print("skipped: the module is not built (target dmise_engine)")
     sys.exit(77)
 os.environ["PYTHONPATH"] = str(ROOT / "build/python")
-os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # of the debugger, which prints of frozen modules
+os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # the debugger prints of frozen modules otherwise
 PICTURES = {"design_a_sensor": 2, "what_accuracy_costs": 1, "train_a_detector": 2, "plug_in_a_tracker": 1}
 
 

@@ -31,7 +31,7 @@ LEO = np.array([7.2e6, 0.0, 0.0, 0.0, 7440.0 * math.cos(INCLINATION), 7440.0 * m
 
 
 def potential(position):
-    """Of the Earth's mass and J2 (Vallado, Fundamentals of Astrodynamics, 8.6)."""
+    """The Earth's potential by its mass and J2 (Vallado, Fundamentals of Astrodynamics, 8.6)."""
     r = np.linalg.norm(position)
     return GM_M3_PER_S2 / r * (1.0 - J2 * (EARTH_RADIUS_M / r) ** 2 * (3.0 * (position[2] / r) ** 2 - 1.0) / 2.0)
 

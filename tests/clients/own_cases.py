@@ -24,7 +24,7 @@ detector: {full_well_e: 25500, gain_e_per_dn: 0.35, read_noise_e: 9, bias_dn: 10
 band: {centre_m: 0.55e-6, width_m: 0.128e-6}
 """
 ORBIT = "semi_major_axis_m: 7178137, eccentricity: 0, inclination_deg: 98.6, raan_deg: 0"
-MOTION = f"{{two_body: {{{ORBIT}, true_anomaly_deg: 0.15}}}}"  # of the probe, where no model moves it
+MOTION = f"{{two_body: {{{ORBIT}, true_anomaly_deg: 0.15}}}}"  # orbit of the probe, where no model moves it
 SCENARIO = """\
 simulation: {{start: 2018-01-21T00:15:00Z, duration_s: {duration_s}, tick_s: 1, seed: 1}}
 nodes:

@@ -36,7 +36,7 @@ from dmise.master import Master  # noqa: E402
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory  # noqa: E402
 
 faulthandler.dump_traceback_later(560, exit=True)  # says where it hangs
-TICKS = 40  # of 5 s
+TICKS = 40  # lasting 5 s each
 LONG = 4000  # ticks of a run with few frames
 START_NS = 1516493700 * 10**9  # UTC, of the harness's scenarios
 

@@ -41,7 +41,7 @@ def last_states(stone_soup, plain, start):
 
 
 def measured_errors(left, truth):
-    """Of detections on each axis [arcsec]: what the sensors' mounts do."""
+    """Errors of detections on each axis [arcsec]: what the sensors' mounts do."""
     errors = []
     for detection in left.detections:
         true = truth[detection.time_ns]

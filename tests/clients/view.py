@@ -26,7 +26,7 @@ except ImportError as missing:
     sys.exit(77)
 import dmise  # noqa: E402
 
-FRAMES = 60  # of a sensor
+FRAMES = 60  # frames of a sensor
 
 
 def columns(path):

@@ -80,7 +80,7 @@ TEST(Distribution, IntegersAndChoicesAreEquallyLikely) {
   std::vector<int> taken(3);
   for (std::uint64_t seed = 1; seed <= many; ++seed)
     ++taken[std::size_t(choices.draw(rng_key(seed, "dataset", 0, "x")).choice)];
-  EXPECT_LT(chi_square(taken), 9.21);  // of 2
+  EXPECT_LT(chi_square(taken), 9.21);  // 1 % of 2 degrees of freedom
 }
 
 TEST(Distribution, TimesAreUniformBetweenTwoDates) {

@@ -127,7 +127,7 @@ TEST(OpticsConfig, TheFieldAcrossTheColumnsIsThatOfTheWholeDistortion) {
                              "camera.yaml"));
         double sum_rad = 0.0;
         for (const double side : {-1.0, 1.0}) {
-          double inside = 0.0, outside = 2.0;  // of |u|
+          double inside = 0.0, outside = 2.0;  // bounds of |u|
           for (int halving = 0; halving < 60; ++halving) {
             const double middle = 0.5 * (inside + outside), u = side * middle;
             const double image = u + k1 * u * u * u + 3 * p2 * u * u;

@@ -129,7 +129,7 @@ TEST_F(ScenarioFile, RefusesADurationThatIsNoWholeNumberOfTicks) {
   EXPECT_EQ(asked("30.1", "0.2"),
             "1:55: simulation.duration_s: must be a whole number of ticks (tick_s: 0.2): 30 or "
             "30.2, got 30.1");
-  // Of the nanoseconds that both are, whatever their binary fractions.
+  // Both are counted in nanoseconds, whatever their binary fractions.
   for (const auto& [duration_s, tick_s] : {std::pair{"49", "7"}, {"30.3", "0.1"}, {"60", "0.3"}}) {
     std::string text = good;
     text.replace(text.find("tick_s: 5"), 9, std::string("tick_s: ") + tick_s);

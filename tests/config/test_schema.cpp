@@ -132,8 +132,8 @@ std::string physics_of(const YAML::Node& scenario, const std::string& path) {
   }
 }
 
-// Of the keys of every_key that its other keys do not need. The digest has some only if they are
-// given, as what else says the value may be another; and two defaults are rounded radians.
+// Every key of every_key is tried that its other keys do not need. The digest has some only if they
+// are given, as what else says the value may be another; and two defaults are rounded radians.
 TEST(Schema, ADefaultIsWhatHoldsWithoutTheKey) {
   setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
   const std::string path = DMISE_SOURCE_DIR "/tests/docs/every_key/scenario.yaml";

@@ -67,7 +67,7 @@ TEST(SkyConfig, AirAndWeather) {
   EXPECT_NEAR(read("atmosphere: {extinction: 0.3}")
                   .atmosphere->extinction_mag_per_airmass.at_or_end(550 * nm),
               0.3, 1e-12);
-  // Of a site's air one key changes itself alone.
+  // One key alone changes in a site's air.
   const auto changed = *read("atmosphere: {extinction: 0.3}", {.atmosphere = air}).atmosphere;
   EXPECT_NEAR(changed.extinction_mag_per_airmass.at_or_end(550 * nm), 0.3, 1e-12);
   EXPECT_EQ(changed.refraction, false);

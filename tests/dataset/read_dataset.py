@@ -63,7 +63,7 @@ def run(*arguments):
 
 
 def contents(out):
-    """Of each key its members by ending, from all archives."""
+    """Members of each key by ending, from all archives."""
     frames = {}
     for path in sorted(out.glob("dataset-*.tar")):
         with tarfile.open(path) as archive:

@@ -99,7 +99,7 @@ inline void expect_bent_streak(double sagitta_px) {
   const Detection& d = result.detections[0];
   EXPECT_NEAR(d.signal_e, s.flux_e, 0.05 * s.flux_e);
   EXPECT_LT(distance_px({d.x_px, d.y_px}, {350, 300}), 1.0);
-  const double across = -2 * sagitta_px / 3;  // of the ends, from the chord through the centroid
+  const double across = -2 * sagitta_px / 3;  // from the chord through the centroid to the ends
   for (const double side : {-1.0, 1.0}) {
     const PixelPosition on = s.at(side * s.length_px / 2);
     const PixelPosition end{on.x_px - across * std::sin(s.angle_rad),

@@ -45,7 +45,7 @@ TEST(Background, AGradientIsNoNoise) {
   }
 }
 
-// Of 4000 DN that fall to a half over 120 px, in a noise of 30.
+// A glow of 4000 DN that falls to a half over 120 px, in a noise of 30.
 TEST(Background, FollowsAGlow) {
   CountImage counts = noise(900, 900, 2000, 1, 30, 5);
   const auto glow = [](int x, int y) {

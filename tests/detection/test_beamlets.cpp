@@ -141,7 +141,7 @@ TEST(Beamlets, FourStripsAreJoinedAsTwoAndTwo) {
           in_halves += half(r / 2 * 2, r % 2, x) >= large;
         }
       EXPECT_EQ(hits.in_whole, in_whole);
-      // Of the lower half those that no line over four strips reaches are in no hit.
+      // Those in the lower half that no line over four strips reaches are in no hit.
       EXPECT_LE(hits.in_halves, in_halves);
       for (std::size_t i = 0; i < hits.in_halves; ++i) {
         const BeamletHit& hit = halves[i];

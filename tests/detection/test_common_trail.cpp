@@ -18,7 +18,7 @@ using simulated::SimulatedScene;
 constexpr int size = 512;
 constexpr double sky_e = 1500.0;  // noise of 39.8 e- a pixel
 
-/// Of an instrument that says it follows the stars: what trails show is in the counts alone.
+/// An instrument says that it follows the stars: what trails show is in the counts alone.
 SimulatedFrame empty_frame(int columns = size, int rows = size) {
   return {camera_header(columns, rows, 1663, 0.0, 400.0, false), columns, rows, sky_e, 5};
 }

@@ -79,7 +79,7 @@ TEST(FaintStreaks, NoiseOfTheLargestCamerasHasNone) {
   EXPECT_EQ(detect(frame.expose(), header, {}, threads).detections.size(), 0u);
 }
 
-/// Pd = Q(threshold - SNR) with the threshold of 7.2 that noise demands, 0.5 in SNR later. Of a
+/// Pd = Q(threshold - SNR) with the threshold of 7.2 that noise demands, 0.5 in SNR later. With a
 /// length of 300 px the SNR of a pixel is below 1.
 TEST(FaintStreaks, AreFoundAtAnSnrThatTheirPixelsDoNotShow) {
   for (const double length : {100.0, 300.0}) {
@@ -151,7 +151,7 @@ TEST(FaintStreaks, KnowHowBadlyTheirEndsAreKnown) {
   EXPECT_NEAR(nees[nees.size() / 2], 0.69, 0.45);
 }
 
-/// Of 400 streaks of 60 px a few have lost an end to noise: their covariances say so. The mean of
+/// A few of 400 streaks of 60 px have lost an end to noise: their covariances say so. The mean of
 /// as many is 1 +- 0.07, as those few have larger squares than a normal distribution.
 TEST(FaintStreaks, KnowThatAnEndMayBeLost) {
   constexpr int side = 10;

@@ -47,7 +47,7 @@ TEST(HardOpen, AWideBodyIsOne) {
   }
 }
 
-// Of 300 electrons per px, an SNR of 4, and of 2000.
+// Trains of 300 electrons per px, an SNR of 4, and of 2000.
 TEST(HardOpen, ATrainWithGapsOfEightPixelsIsTen) {
   for (const double e_per_px : {300.0, 2000.0}) {
     HardFrame scene(800, 500, 5);

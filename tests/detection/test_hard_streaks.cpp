@@ -56,7 +56,7 @@ TEST(HardStreaks, ThatRunIntoPixelsWithoutAValueEndAtThem) {
   for (const double e_per_px : {200.0, 500.0})
     for (const double angle : {0.05, 0.4, 0.8, 1.3, 2.2})
       for (const double seen_px : {70.0, 110.0, 160.0})
-        for (const double turn : {pi / 2, pi / 3}) {  // of the border to the streak
+        for (const double turn : {pi / 2, pi / 3}) {  // angle of the border to the streak
           const TrueStreak whole{250, 250, 200, angle, 200 * e_per_px};
           const double border_px = seen_px - whole.length_px / 2;
           const PixelPosition middle = whole.at(border_px - seen_px / 2);
@@ -78,7 +78,7 @@ TEST(HardStreaks, ThatRunIntoPixelsWithoutAValueEndAtThem) {
           ASSERT_EQ(found.size(), 1u);
           expect_is(found[0], seen, {.end_px = e_per_px > 300 ? 3.0 : 8.0});
           EXPECT_TRUE(found[0].at_edge);
-          // Of the matched filter, of a PSF of 0.8 px in noise of 40 e-.
+          // SNR of the matched filter, with a PSF of 0.8 px in noise of 40 e-.
           const double ideal = e_per_px * std::sqrt(seen_px / (2 * 0.8 * std::sqrt(pi))) / 40;
           EXPECT_GT(found[0].snr, 0.5 * ideal);
         }
@@ -139,7 +139,7 @@ TEST(HardStreaks, ABroadOneIsOne) {
       }
 }
 
-// Of an SNR of up to 2,000, brighter or fainter by 40 % each 4 px.
+// Streaks of an SNR of up to 2,000, brighter or fainter by 40 % each 4 px.
 TEST(HardStreaks, ABrightOneThatFlickersIsFound) {
   for (const double e_per_px : {1000.0, 5000.0, 25000.0}) {
     HardFrame scene(600, 600, 33);

@@ -25,7 +25,7 @@ FrameHeader header() {
   return h;
 }
 
-using Light = std::function<double(double)>;  // of the share of the line, 0 to 1
+using Light = std::function<double(double)>;  // at a share of the line, 0 to 1
 
 /// Draws a streak through a place as many short ones.
 void add(SimulatedFrame& frame, double x, double y, double length, double angle_rad,

@@ -17,7 +17,7 @@ using simulated::SimulatedScene;
 
 constexpr int columns = 203, rows = 150;
 constexpr double sky_e = 1500.0;
-constexpr double read_e = 9.3;  // of the header
+constexpr double read_e = 9.3;  // as the header says
 
 SimulatedFrame sky() {
   return {camera_header(columns, rows, 1663, 0.0, 10.0, false), columns, rows, sky_e, 4};
@@ -34,11 +34,11 @@ TEST(PointSnr, OfNoiseScattersByOne) {
       sum += double(snr.at(x, y));
       square += std::pow(double(snr.at(x, y)), 2);
     }
-  EXPECT_NEAR(sum / count, 0.0, 0.1);  // of the level, of which each pixel has the same error
+  EXPECT_NEAR(sum / count, 0.0, 0.1);  // the level, of which each pixel has the same error
   EXPECT_NEAR(std::sqrt(square / count), 1.0, 0.05);
 }
 
-// Of a Gaussian of sigma s in white noise n a pixel the SNR is F / (n s sqrt(4 pi)).
+// A Gaussian of sigma s in white noise n a pixel has an SNR of F / (n s sqrt(4 pi)).
 TEST(PointSnr, OfAStarIsThatOfTheIdealFilter) {
   SimulatedFrame frame = sky();
   frame.add_point(100, 70, 20000);

@@ -25,7 +25,7 @@ SimulatedFrame sky() {
   return {camera_header(columns, rows, 1663, 0.0, 10.0, false), columns, rows, sky_e, 9};
 }
 
-/// The same noise in each, with the light of stars that were drawn or without.
+/// One noise for both, with the light of stars that were drawn or without.
 SimulatedScene exposed(bool with_star) {
   SimulatedFrame noise = sky(), light = sky();
   CountImage counts = noise.expose();

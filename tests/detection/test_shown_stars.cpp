@@ -17,7 +17,7 @@ using simulated::SimulatedFrame;
 using simulated::SimulatedScene;
 
 constexpr int size = 400;
-constexpr double sky_e = 1500.0, flux_e = 8000.0;  // of SNR 70
+constexpr double sky_e = 1500.0, flux_e = 8000.0;  // an SNR of 70
 
 /// A frame whose stars are 0.2 px and 15 % beside what is expected, with a fainter one 3 px from
 /// each second of them.

@@ -29,7 +29,7 @@ TEST(StarMotion, TrackedStarsStandStill) {
 }
 
 // On the equator h = tan(hour angle) of a place to the west and d = tan(dec) sqrt(1 + h^2) of one
-// to the north are a gnomonic frame's coordinates in focal lengths. Of a mount at rest h grows by
+// to the north are a gnomonic frame's coordinates in focal lengths. On a mount at rest h grows by
 // 1 + h^2 and d by d h, the most at the corners.
 TEST(StarMotion, LongestTrailsOfAWideFrameAreAtItsCorners) {
   const StarMotion motion(simulated::camera_header(3326, 2504, 1663.0, 0.0, 20, true), 3326, 2504);

@@ -59,7 +59,7 @@ TEST(DetectorFigures, EveryOneRefusesNanAndWhatIsOutOfItsRange) {
   }
 }
 
-// The same name in YAML, FITS and code; FITS allows eight characters.
+// A figure has one name in YAML, FITS and code; FITS allows eight characters.
 TEST(DetectorFigures, HaveKeywordsOfTheirOwn) {
   std::set<std::string> seen;
   for (const DetectorParameter& p : detector_parameters()) {

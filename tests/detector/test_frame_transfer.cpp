@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr int columns = 301, rows = 200;  // of several pieces
+constexpr int columns = 301, rows = 200;  // several pieces of work
 constexpr double exposure_s = 2.0, transfer_s = 0.5;
 const Exposure exposure{.seed = 1, .sensor = "s", .frame = 1, .exposure_s = exposure_s};
 

@@ -47,7 +47,7 @@ TEST(ApertureFraction, OfAGaussianIsThatOfItsWidth) {
                 1.0 - std::exp(-radius * radius / 2 / variance), 3e-4);
 }
 
-// Of an Airy pattern 2 / (pi v) is beyond v = pi D r / lambda (Born & Wolf, section 8.5.2, from the
+// An Airy pattern has 2 / (pi v) beyond v = pi D r / lambda (Born & Wolf, section 8.5.2, from the
 // asymptotes of J0 and J1): what the ring takes for background.
 TEST(ApertureFraction, LeavesOutTheWingsInTheRing) {
   const Aperture aperture;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Holds documents and code to docs/glossary.md: its words are in order, each once, each is said in what its row points at and
-in another document, and nobody says what a row has under `not`. No comment of the program begins with "the same" or "likewise": it names its subject.
+in another document, and nobody says what a row has under `not`. No comment of the program begins with "of", "the same" or "likewise": it names its subject.
 
     glossary.py        exits 1 and names what is wrong
 """
@@ -64,14 +64,21 @@ def faults():
                     yield f"{name}:{text[:found.start()].count(chr(10)) + 1}: says {wrong!r} for {word!r} (docs/glossary.md)"
 
 
+def has_subject(line, before):
+    """Whether the comment in a line, if there is one, names its subject. It may go on in small letters where the line before has a comment."""
+    begun = re.search(r"//+<? ?(of|the same|likewise)\b", line, re.I)
+    continues = "//" in before and line.lstrip().startswith("//") and "///<" not in line
+    return not begun or continues and begun[1][0].islower()
+
+
 def faults_of_comments():
     """Comments without a subject."""
-    begins = re.compile(r"//+ (?:The same|Likewise)\b|\S\s+// (?:the same|likewise)\b")
-    for folder in CODE:
+    for folder in (*CODE, "bench", "tests"):
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".h", ".cpp"):
-                for number, line in enumerate(path.read_text().splitlines(), 1):
-                    if begins.search(line):
+            if path.suffix in (".h", ".cpp", ".proto", ".ts") and "node_modules" not in str(path):
+                lines = path.read_text().splitlines()
+                for number, (before, line) in enumerate(zip(["", *lines], lines), 1):
+                    if not has_subject(line, before):
                         yield f"{path.relative_to(ROOT)}:{number}: the comment has no subject"
 
 

@@ -25,7 +25,7 @@ LIBRARIES = {"zmq.": "ZeroMQ", "spdlog/": "spdlog", "CLI/": "CLI11", "fitsio": "
              "zlib.h": "zlib", "zstd.h": "zstd", "sodium.h": "libsodium", "OpenImageIO/": "OpenImageIO",
              "nanobind/": "nanobind", "Eigen/": "Eigen", "unsupported/Eigen/": "Eigen", "boost/": "Boost"}
 MOST_BOXES = 12  # that a person can hold in mind
-MOST_PAIRS = 20  # of a header and its source in a directory
+MOST_PAIRS = 20  # a header and its source in a directory
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
 
 
@@ -90,7 +90,7 @@ def boxes(layers):
 
 
 def used_boxes(layers):
-    """Of each box, the others that its directories use."""
+    """The others that the directories of each box use."""
     box_of = {layer["folder"]: layer["box"] for layer in layers}
     return {box: {box_of[used] for row in rows for used in row["uses"] if used in box_of} - {box} for box, rows in boxes(layers).items()}
 

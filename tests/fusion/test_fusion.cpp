@@ -77,8 +77,8 @@ TEST(Fusion, CorrelatesDetectionsWithTheCatalogue) {
   EXPECT_GT(confirmed, 15u);
 }
 
-// Of two objects 2 km apart, each known to some kilometres, one is seen: which it is, is not known,
-// and the track of either is less than certain. One that is alone is.
+// Two objects are 2 km apart, each known to some kilometres, and one is seen: which it is, is not
+// known, and the track of either is less than certain. One that is alone is.
 TEST(Fusion, ADetectionBetweenTwoObjectsIsNoProof) {
   FusionTrial all(objects(3000), evening, good_sites(1));
   const auto frames = all.frames(sim_seconds(0), 1);
@@ -180,7 +180,7 @@ void jitter(SensorFrame& frame, double sigma_rad, bool stated, std::mt19937_64& 
 /// Tracks of four bright objects, known to 0.3 arcsec, through jitter of 1 arcsec.
 struct JitteredTracks {
   std::size_t made = 0;
-  double nees = 0.0;  // of positions, mean
+  double nees = 0.0;  // mean over positions
 };
 
 JitteredTracks tracks_through_jitter(bool stated, unsigned seed) {

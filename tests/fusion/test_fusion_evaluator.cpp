@@ -66,7 +66,7 @@ struct TwoSites {
   std::vector<Message> inputs(Tick tick) {
     std::vector<Message> out;
     if (tick == 0) out.push_back({roster_topic, 0, std::make_shared<State>(roster)});
-    const double scale_deg = 2.5e-3 / deg;  // of a pixel
+    const double scale_deg = 2.5e-3 / deg;  // size of a pixel
     for (const SensorFrame& frame :
          trial->frames(sim_seconds(double(tick) * cadence_s), std::uint32_t(tick + 1))) {
       const auto boresight = to_spherical(frame.axis);

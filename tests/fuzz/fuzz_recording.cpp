@@ -34,7 +34,7 @@ class File {
   int number_ = memfd_create("recording", MFD_CLOEXEC);
 };
 
-/// The same recording plain, in a chunk, in a compressed chunk.
+/// A recording plain, in a chunk, in a compressed chunk.
 const std::vector<std::string>& samples() {
   static const std::vector<std::string> all = [] {
     const std::string records = test::sample_records();

@@ -14,7 +14,7 @@ const Outbox& outbox() {
     auto* box = new Outbox(run, "source", 1, {environment_topic, objects_topic}, 3);
     for (Tick tick = 0; tick < 6; ++tick) {
       std::vector<Message> messages;
-      for (test::Example& example : test::examples(unsigned(tick + 23)))  // of this tick
+      for (test::Example& example : test::examples(unsigned(tick + 23)))  // this tick only
         if (std::holds_alternative<EnvironmentState>(example.state) && example.tick == tick)
           messages.push_back({example.topic, tick, std::make_shared<const State>(example.state)});
       box->pack(tick, messages);

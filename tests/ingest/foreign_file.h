@@ -21,7 +21,7 @@ struct ForeignImage {
   bool in_extension = false;
   int compression = 0;  // RICE_1, GZIP_1, GZIP_2, HCOMPRESS_1; 0: none
   double bscale = 1.0, bzero = 0.0;
-  long long blank = 0;  // of integers without a value, if it is not 0
+  long long blank = 0;  // marks integers without a value, if it is not 0
 };
 
 template <class T>

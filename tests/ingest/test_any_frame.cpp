@@ -32,7 +32,7 @@ std::string error_of(const std::string& bytes, const FrameChoice& choice = {}) {
   return "no error";
 }
 
-/// The same objects, with places and light within some of the errors of the fit.
+/// Both have the same objects, with places and light within some of the errors of the fit.
 void expect_same(const std::vector<Detection>& got, const std::vector<Detection>& expected,
                  double sigmas) {
   ASSERT_EQ(got.size(), expected.size());
@@ -297,7 +297,7 @@ TEST(AnyFrame, ASettingInGainIsNoGain) {
   EXPECT_THAT(stated.notes.assumed, Contains(HasSubstr("gain: GAIN = 0.5 is taken for")));
 }
 
-// Of an MJD with three decimals no text claims a time within its 86 s.
+// No text claims a time within the 86 s of an MJD with three decimals.
 TEST(AnyFrame, TimesHaveNoDigitsThatNobodyKnows) {
   const Scene scene = draw(false, 4);
   const Frame frame =
@@ -377,7 +377,7 @@ ForeignImage crossed_lines(std::mt19937_64& random) {
           .cards = {card("DATE-OBS", "'2021-05-01T04:00:00'"), card("EXPTIME", "2.0")}};
 }
 
-/// Of processor time, so that a busy machine does not count.
+/// Seconds of processor time, so that a busy machine does not count.
 double seconds_of_search(const ForeignImage& image) {
   const std::clock_t begin = std::clock();
   detections_in(read_one(image));

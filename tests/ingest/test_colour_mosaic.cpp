@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-constexpr double dyes[] = {0.55, 1.0, 1.0, 0.45};  // of pixels (0, 0), (1, 0), (0, 1), (1, 1)
+constexpr double dyes[] = {0.55, 1.0, 1.0, 0.45};  // at pixels (0, 0), (1, 0), (0, 1), (1, 1)
 constexpr double mean_dye = 0.75;
 
 /// The frame behind a mosaic of dyes, of each electron by chance: 0.5 electrons a count, bias 100.

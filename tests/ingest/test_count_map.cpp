@@ -34,7 +34,7 @@ TEST(CountMap, KeepsWholeNumbersOf16Bits) {
 }
 
 // Counts of 12 and 14 bits as 16: a noise of 0.45 of a step, sqrt(0.45^2 + 1/12) = 0.535 after
-// rounding. Of steps of 16 counts the noise would be measured as less than a count.
+// rounding. In steps of 16 counts the noise would be measured as less than a count.
 TEST(CountMap, PaddedCountsGoBackToTheirSteps) {
   for (const auto& [step, zero] : {std::pair{16.0, 0.0}, {4.0, 3.0}}) {
     auto values = sky(100, 0.45);

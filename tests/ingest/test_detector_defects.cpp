@@ -47,7 +47,7 @@ TEST(DetectorDefects, OverscanIsNotUsed) {
   EXPECT_EQ(detections_in(frame).size(), 2u);
   image.cards.back() = card("TRIMSEC", "' [ 460 : 1 , 1 : +400 ] '");  // flipped, with blanks
   EXPECT_EQ(unusable_in(read_one(image), 460, columns - 1), std::size_t(40 * rows));
-  // Of the frame before it was cut, and texts that are no section.
+  // Sections of the frame before it was cut, and texts that are no section.
   for (const char* text :
        {"'[51:2098,1:4608]'", "'[0:460,1:400]'", "'[-2147483648:460,1:400]'",
         "'[1:99999999999,1:400]'", "'[1:460,1:400'", "'[1:460;1:400]'", "'[1:460,1:400]x'", "'[,]'",
@@ -76,7 +76,7 @@ TEST(DetectorDefects, WhatIsOverscanIsNotUsed) {
     EXPECT_TRUE(read_one(image).unusable.pixels.empty()) << text;
     image.cards.pop_back();
   }
-  // Of the frame before it was cut, as its DATASEC tells.
+  // Sections of the frame before it was cut, as its DATASEC tells.
   image.cards.push_back(card("DATASEC", "'[41:540,1:400]'"));
   image.cards.push_back(card("BIASSEC", "'[1:40,1:400]'"));
   EXPECT_TRUE(read_one(image).unusable.pixels.empty());

@@ -22,7 +22,7 @@ Vec<Body> direction(double from_pole_rad, double longitude_rad) {
 
 RngKey object(std::uint32_t number, std::uint64_t seed = 1) { return glint_key(seed, "X", number); }
 
-/// Of parts that are seen at a bisector, which is where Sun and viewer are in one direction.
+/// Light of parts that are seen at a bisector, which is where Sun and viewer are in one direction.
 double light(const GlintField& field, const RngKey& key, const Vec<Body>& at) {
   return field.over_smooth(key, at, at);
 }

@@ -24,7 +24,7 @@ ObjModel parse(std::string_view text) {
   return parse_obj(text, "a.obj", sources);
 }
 
-/// Of a model in files of its own, with a picture of 2 x 2 pixels beside it.
+/// What is wrong with a model in files of its own, with a picture of 2 x 2 pixels beside it.
 std::string complaint_of_files(const std::string& mtl) {
   const std::string folder = testing::TempDir() + ".";
   write_picture(folder + "/obj-2x2.png", Picture{2, 2, 1, {0, 255, 128, 7}});

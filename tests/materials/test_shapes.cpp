@@ -73,7 +73,7 @@ TEST(Shapes, ABoxWingHasAnotherMaterialTowardsZ) {
   EXPECT_NEAR(area_m2, BoxWing{}.body_m.x * BoxWing{}.body_m.y, 1e-12);
 }
 
-// Of the finest sphere too, which all pairs of facets and vertices would take half a minute for.
+// The finest sphere, too: all pairs of facets and vertices would take half a minute for it.
 TEST(Shapes, OfManyFacetsAreKnownAsConvexUpToASmallDent) {
   Mesh fine = sphere(1, 200'000, {});
   EXPECT_TRUE(is_convex(fine));

@@ -117,7 +117,7 @@ class Workshop:
 
 
 def key_of(mutant):
-    """Of the mutant as it is written, and the tree that it changes."""
+    """Hash of the mutant as it is written, and of the tree that it changes."""
     tree = subprocess.check_output(["git", "rev-parse", "HEAD^{tree}"], cwd=ROOT, text=True)
     text = json.dumps(mutant, sort_keys=True) + tree
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-// Of Vallado et al., AIAA 2006-6753, with the epoch of the scenario.
+// Elements by Vallado et al., AIAA 2006-6753, with the epoch of the scenario.
 const std::string line1 = "1 25544U 98067A   18021.02083333  .00000000  00000-0  00000-0 0  9990";
 const std::string line2 = "2 25544  51.6400 200.0000 0003000 100.0000  60.0000 15.54000000    06";
 

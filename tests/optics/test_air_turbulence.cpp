@@ -40,7 +40,7 @@ TEST(ImageMotion, FallsWithTheExposureAsAFrozenLayersDoes) {
   struct Row {
     double blown;
     int screens;
-    double along, across;  // of the variance of an instant
+    double along, across;  // shares of the variance of an instant
   };
   constexpr Row table[] = {
       {1, 1000, 0.895, 0.959},  {3, 1000, 0.683, 0.836},   {10, 1000, 0.460, 0.632},

@@ -61,7 +61,7 @@ std::vector<float> convolved(const std::vector<float>& image, const std::vector<
   return out;
 }
 
-/// The same by FFTW's scalar code.
+/// A convolution by FFTW's scalar code.
 std::vector<float> convolved_by_scalar_code(std::vector<float> image, std::vector<float> kernel) {
   const std::size_t half = std::size_t(columns / 2 + 1) * rows;
   std::vector<std::complex<float>> a(half), b(half);

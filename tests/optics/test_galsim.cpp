@@ -77,7 +77,7 @@ TEST(FrameAgainstGalSim, OfALongExposure) {
 // Born & Wolf: first zero at 1.2197 lambda/D with 83.8 % of the light inside, 91.0 % within the
 // second at 2.2331. Pixels cut by the circle count by the share of 16 x 16 points inside.
 TEST(Frame, OfAClearApertureIsTheAiryPattern) {
-  constexpr double pixel = 0.1;  // of lambda / D
+  constexpr double pixel = 0.1;  // in lambda / D
   const Star s = star(telescope(diameter, pixel * lambda / diameter));
   const auto encircled = [&](double radius_px) {
     double sum = 0;

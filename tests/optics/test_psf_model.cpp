@@ -73,7 +73,7 @@ TEST(PsfModel, WithoutAberrationsIsTheDiffractionLimit) {
 TEST(PsfModel, ThePupilsKernelIsThatOfTheTransferFunction) {
   Optics o = telescope(), spidered = telescope();
   o.obscuration = spidered.obscuration = 0.3;
-  spidered.spread.spiders = 1;  // of no width: takes the way through the pupil
+  spidered.spread.spiders = 1;  // without width: takes the way through the pupil
   const PsfKernel a = kernel_of_camera(o), b = kernel_of_camera(spidered);
   double worst = 0;
   for (std::size_t i = 0; i < a.values.size(); ++i)
@@ -284,7 +284,7 @@ TEST(PsfModel, ManyWavelengthsAreTheMeanOfTheirKernels) {
 // wherever its centre is among them.
 TEST(PsfModel, AnyNumberOfWavelengthsIsMovedByTheSameAir) {
   struct Band {
-    double width, off_centre;  // of the wavelength
+    double width, off_centre;  // relative to the wavelength
   };
   for (const double aperture_m : {0.4, 1.0})
     for (const double r0_m : {0.08, 0.2})

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double lambda = 0.55e-6;
 constexpr int side = 121, middle = 60;
-constexpr std::array radii_px{10.0, 20.0, 30.0, 40.0};  // of the tables' encircled light
+constexpr std::array radii_px{10.0, 20.0, 30.0, 40.0};  // where the tables have encircled light
 
 /// A telescope of 3 m with pixels of half lambda / D: 65 of them are the disc of 500 km.
 Optics three_metres(PointSpread::Model model = PointSpread::Model::diffraction) {

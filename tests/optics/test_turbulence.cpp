@@ -17,7 +17,7 @@ std::array<PhaseScreen, 2> drawn(KolmogorovScreens& screens, const RngKey& key, 
                                  double r0_samples) {
   std::array<std::vector<float>, 2> fields;
   const auto tilts = screens.draw_fields(key, draw, fields[0], fields[1]);
-  const double scale = std::pow(r0_samples, -5.0 / 6);  // of the phase: D goes as r0^(-5/3)
+  const double scale = std::pow(r0_samples, -5.0 / 6);  // factor of the phase: D goes as r0^(-5/3)
   std::array<PhaseScreen, 2> pair;
   for (std::size_t part = 0; part < 2; ++part) {
     pair[part].side = screens.side();

@@ -55,7 +55,7 @@ TEST(AttitudeInterpolation, NadirIsGoodToMicroarcsecondsAndFallsWithTheFourthPow
   EXPECT_LT(worst_rad(SunYawAttitude{}, 10.0), 1e-3 * arcsec);
 }
 
-// Of a tumbling rocket body the error falls with the fourth power of the tick, and is what
+// The error for a tumbling rocket body falls with the fourth power of the tick, and is what
 // `worst_interpolation_rad` says.
 TEST(AttitudeInterpolation, ATumblingBodyIsMetToTheFourthPowerOfTheTick) {
   const TumblingAttitude tumbling{rotation_of<Gcrs, Body>({0.5, 0.1, -0.7, 0.2}),

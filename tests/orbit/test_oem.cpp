@@ -23,7 +23,7 @@ std::string meta(const std::string& frame = "GCRF", const std::string& system = 
          "EARTH\nREF_FRAME = " +
          frame + "\nTIME_SYSTEM = " + system + "\n" + more + "META_STOP\n";
 }
-/// The same of another object.
+/// Metadata of another object.
 std::string named(const std::string& name, const std::string& id) {
   return "META_START\nOBJECT_NAME = " + name + "\nOBJECT_ID = " + id +
          meta().substr(meta().find("\nCENTER"));

@@ -28,7 +28,7 @@ const Edge edges[] = {
 struct Failing {
   double e, inclination_deg, rev_per_day, bstar, minutes;
   int code;
-  double radius_km;  // of code 0
+  double radius_km;  // where the code is 0
   double a_km;       // Brouwer's semi-major axis
 };
 // Reference: the compiled sgp4 of PyPI, by tests/reference/sgp4_codes.py.

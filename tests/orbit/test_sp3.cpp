@@ -142,7 +142,7 @@ TEST(Sp3, IsInGcrsWhereAstropyHasIt) {
                     iers_path = test::data_path("eop/finals2000A.all.gz");
   DMISE_NEEDS_FILE(orbit_path);
   DMISE_NEEDS_FILE(iers_path);
-  const Trajectory orbit = read_sp3(orbit_path);  // of one satellite
+  const Trajectory orbit = read_sp3(orbit_path);  // a single satellite
   EXPECT_EQ(orbit.segments.front().object_name, "L74");
   const Clock clock({2458476.5, 0.0}, std::make_shared<const IersTable>(
                                           IersTable::read_finals2000a(iers_path)));  // 2018-12-24

@@ -101,7 +101,7 @@ TEST(TorqueFree, TheRateIsTheDerivativeOfTheAttitudeAndAnyInstantMayBeTheFirst) 
   }
 }
 
-// Of an axisymmetric body the axis goes round the momentum at L / It, and the rate round the axis
+// The axis of an axisymmetric body goes round the momentum at L / It, and the rate round the axis
 // at (1 - Ia / It) wa (Landau & Lifshitz, Mechanics, sections 33 and 36).
 TEST(TorqueFree, AnAxisymmetricBodyPrecessesAndSpinsAtTheClosedForm) {
   const TorqueFreeRotation rotation({900, 8000, 8000}, {0.3, 0.2, -0.1});

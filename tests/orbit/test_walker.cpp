@@ -114,7 +114,7 @@ TEST(Walker, TheSemiMajorAxisIsThatOfSgp4) {
     }
 }
 
-// Of the same plane but for the node, which turns by 5 deg a day: 0.1 deg in 30 minutes.
+// All have the same plane but for the node, which turns by 5 deg a day: 0.1 deg in 30 minutes.
 TEST(Walker, OfATrainTheNextIsWhereTheOneBeforeWas) {
   Walker train = shell;
   train.planes = 1;

@@ -60,7 +60,7 @@ TEST_F(ActorStatesTest, WhatANodeSaysIsTheStateOfItsObjects) {
   EXPECT_EQ(states.position(2), (Vec<Gcrs>{r + 2, 0, 0}));
   EXPECT_EQ(states.attitude(0)->gcrs_from_body, (Quaternion{0.6, 0.8, 0, 0}));
   EXPECT_EQ(states.attitude(1)->rate_rad_per_s, (Vec<Gcrs>{0, 0, 0.2}));
-  // Of a path along z at x = r, whose nadir turns by v / r about -y.
+  // A path along z at x = r has a nadir that turns by v / r about -y.
   EXPECT_NEAR(states.attitude(2)->rate_rad_per_s.y, -7500.0 / (r + 2), 1e-9);
   for (std::uint32_t i = 0; i < 3; ++i) {
     const ObjectStates one = source.of_some({{i}}, 2, source.instants(time), &actors);

@@ -42,7 +42,7 @@ TEST_F(ObjectPopulationTest, CataloguesComeFirstThenElementsThenTheOtherModels) 
   EXPECT_EQ(p.roster.objects[0].name, "GOES 13");
   EXPECT_EQ(p.roster.objects[1].name, "own");
   EXPECT_EQ(p.roster.objects[1].catalogue_number, 29156u);
-  EXPECT_NEAR(p.roster.objects[1].element_age_s / 3600, 5.77, 0.01);  // of day 20.770
+  EXPECT_NEAR(p.roster.objects[1].element_age_s / 3600, 5.77, 0.01);  // its epoch is day 20.770
   EXPECT_EQ(p.roster.objects[2].name, "mast");
   EXPECT_EQ(p.roster.objects[2].catalogue_number, first_own_number);
   ASSERT_TRUE(p.roster.objects[2].panel);
@@ -65,8 +65,8 @@ TEST_F(ObjectPopulationTest, AConstellationIsASourceLikeACatalogue) {
   EXPECT_EQ(p.roster.objects[0].catalogue_number, first_own_number + 1);
   EXPECT_EQ(p.roster.objects[0].sphere.radius_m, 2.0);
   EXPECT_EQ(p.roster.objects[5].name, "ring-3-2");
-  EXPECT_EQ(p.roster.objects[7].catalogue_number, first_own_number);  // of the mast
-  EXPECT_EQ(p.attitudes.size(), 2u);                                  // of the model
+  EXPECT_EQ(p.roster.objects[7].catalogue_number, first_own_number);  // the mast
+  EXPECT_EQ(p.attitudes.size(), 2u);                                  // from the model
   EXPECT_EQ(complaint([&] {
               population(
                   "  - {walker: {total: 1, planes: 1, height_m: 550.0e+3, inclination_deg: 53}}\n"

@@ -66,7 +66,7 @@ inline ObjectStates states_at(Tick tick) {
 }
 inline std::string recorded(const State& state, const std::string& envelope = "") {
   const Encoded body = encode(state);
-  google::protobuf::UnknownFieldSet fields;  // of RecordedMessage
+  google::protobuf::UnknownFieldSet fields;  // fields of RecordedMessage
   fields.AddLengthDelimited(1)->assign(envelope);
   fields.AddLengthDelimited(2)->assign(body.arrays);
   fields.AddLengthDelimited(int(body.kind))->assign(body.payload);

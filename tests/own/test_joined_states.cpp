@@ -46,7 +46,7 @@ TEST(JoinedStates, CubicsFollowAnOrbitAndASpin) {
   }
 }
 
-// Of a smooth path the error of one step is told within some percent by the step of twice its
+// The error of one step of a smooth path is told within some percent by the step of twice its
 // length.
 TEST(JoinedStates, TheErrorIsThatOfTheClosedForm) {
   const ObjectStates a = on_circle(0, 0.0), b = on_circle(1, 60.0), c = on_circle(2, 120.0);

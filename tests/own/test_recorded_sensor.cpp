@@ -82,7 +82,7 @@ TEST_F(RecordedSensorTest, RefusesARecordingWithoutAFrame) {
               ThrowsMessage<ConfigError>(EndsWith(": lacks frame 1 of sensor eye")));
 }
 
-// Of a sensor that is cued nobody knows which frames there will be.
+// Nobody knows which frames there will be of a sensor that is cued.
 TEST_F(RecordedSensorTest, EndsTheRunAtAFrameThatItLacks) {
   const SourceFinder find = finder({1}, 0);
   EXPECT_TRUE(find(CountImage{}, FrameHeader{.frame = 1}));

@@ -46,8 +46,8 @@ double magnitude(const char* filter, const StarColour& colour) {
 
 // Medians of stars about a B-V, by tests/reference/star_spectra.py --check. U-B: the Yale Bright
 // Star Catalogue, all classes (of 49 to 461 stars each); V-R and V-I: Landolt's standards, 1992, AJ
-// 104, 340 (14 to 72 each; some reddened by dust, which moves V-I by 0.05 at a given B-V). Of the
-// stars of the Yale catalogue that are bluer than 0 many are reddened or no dwarfs.
+// 104, 340 (14 to 72 each; some reddened by dust, which moves V-I by 0.05 at a given B-V). Many
+// stars of the Yale catalogue that are bluer than 0 are reddened or no dwarfs.
 TEST(StarSpectrum, HasTheColoursOfTheStarsOfCatalogues) {
   const double u[][2] = {{-0.2, -0.82}, {-0.1, -0.45}, {0.0, -0.05}, {0.1, 0.09}, {0.2, 0.11},
                          {0.3, 0.07},   {0.4, -0.01},  {0.5, 0.01},  {0.6, 0.10}, {0.7, 0.24},

@@ -17,7 +17,7 @@ namespace dmise::test {
 struct SkyTarget {
   double azimuth_rad = 0.0, elevation_rad = 0.0;  // over the geodetic horizon, without air
   double altitude_m = 0.0;                        // over a sphere of 6371 km
-  double course_rad = 0.0;                        // of its motion, about its radius
+  double course_rad = 0.0;                        // direction of its motion, about its radius
   double magnitude = 10.0;                        // roughly
   double radial_share = 0.0;                      // radial speed over that of a circular orbit
 };

@@ -148,7 +148,7 @@ TEST(Cue, ASensorThatGoesOnKnowsItsTasks) {
   EXPECT_EQ(first.delay("env/common"), 0);
   EXPECT_FALSE(first.needs("task/eye"));
   for (Tick tick = 0; tick <= 2; ++tick) step(first, tick);
-  EXPECT_EQ(frames, (std::vector<std::uint32_t>{4}));  // of 7.5 s
+  EXPECT_EQ(frames, (std::vector<std::uint32_t>{4}));  // begun at 7.5 s
   EXPECT_EQ(CueJournal::ticks_done(stage.directory.string() + "/eye"), 3);
   SensorEvaluator second = sensor();
   second.resume(3, inputs(2));

@@ -72,7 +72,7 @@ struct Nees {
   std::size_t found = 0;
 };
 
-/// Of the directions of the objects aimed at, by the published covariance.
+/// NEES of the directions of the objects aimed at, by the published covariance.
 Nees nees_of(test::Stage& stage) {
   std::vector<double> all;
   for (std::size_t k = 0; k < stage.scenario.sensors.size(); ++k) {
@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(Everywhere, SaturatedTargets,
                          testing::Combine(testing::Values("psf_fwhm_px: 1.6", "psf_fwhm_px: 4"),
                                           testing::Values("false")));
 
-/// Of both ends, in any order, against where the pixels of start and end are in the sky.
+/// NEES of both ends, in any order, against where the pixels of start and end are in the sky.
 double nees_of_ends(const Detection& d, const Truth& truth, const Wcs& wcs) {
   PixelPosition at1{truth.start_x_px, truth.start_y_px}, at2{truth.end_x_px, truth.end_y_px};
   if (at2.x_px < at1.x_px) std::swap(at1, at2);

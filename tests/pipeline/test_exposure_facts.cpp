@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double half_diagonal_rad = 4.8 * deg;  // of geo-watch
+constexpr double half_diagonal_rad = 4.8 * deg;  // as geo-watch has it
 
 struct Field {
   std::string pointing = "{azimuth_deg: 168.7, elevation_deg: 52}", start = "2018-01-21T00:15:00Z";

@@ -88,7 +88,7 @@ TEST(FieldOptics, TruthIsWhereTheChiefRayIsAndComaPutsTheLightBesideIt) {
     const auto light = test::centroid(frame.counts, {star.x_px, star.y_px}, 13);
     const double dx = star.x_px - 79.5, dy = star.y_px - 59.5, r = std::hypot(dx, dy);
     const auto shift = centroid_of_field_px(o, {r / corner_px(o), std::atan2(dy, dx)});
-    // Of coma 0.05 px of the shift is in light beyond 13 px.
+    // Coma puts 0.05 px of the shift in light beyond 13 px.
     EXPECT_NEAR(light.x_px - star.x_px, shift[0], 0.05);
     EXPECT_NEAR(light.y_px - star.y_px, shift[1], 0.05);
     if (r > 50) {

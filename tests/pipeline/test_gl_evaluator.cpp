@@ -27,7 +27,7 @@ std::string camera(const std::string& projection, double field_deg, const std::s
          std::to_string(field_deg) + ", aperture_m: 3.0e-4" + more + "}\n" + detector;
 }
 
-/// The same sensor twice: along the path, and as snapshots by OpenGL.
+/// One sensor twice: along the path, and as snapshots by OpenGL.
 std::string twice(const std::string& place, const std::string& pointing, double exposure_s,
                   const std::string& camera) {
   std::string text = "sensors:\n";

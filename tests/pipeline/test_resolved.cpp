@@ -103,7 +103,7 @@ TEST(Resolved, AMovingObjectLeavesAStreakAsEvenAsAPointDoes) {
     EXPECT_NEAR(of_box[i] / box_sum / (of_point[i] / point_sum), 1.0, 0.03) << i;
 }
 
-// Of a ball of some 800 pixels a small frame sees the middle of what a larger one does.
+// A small frame sees the middle of what a larger one does of a ball of some 800 pixels.
 TEST(Resolved, OfAnObjectLargerThanTheFrameTheFrameSeesItsPart) {
   const Sight sight = lit_sight();
   const auto frame = [&](int side) {

@@ -58,7 +58,7 @@ double expected_e(const FrameProducts& frame) {
          light_of_magnitude(truth.true_magnitude - frame.header.zero_point_mag) * truth.sunlit;
 }
 
-// The same sphere by its closed form and as a mesh.
+// One sphere by its closed form and as a mesh.
 TEST(Shapes, ASphereOfFacetsIsAsBrightAsTheDiffuseSphere) {
   for (const std::string radius : {"0.08", "1"}) {  // without and with a size of its own
     Stage facets(scenario(

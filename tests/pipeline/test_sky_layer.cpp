@@ -193,7 +193,7 @@ struct GridErrors {
   std::array<double, SkyGrid::tolerance.size()> worst{}, bound{};
 };
 
-/// Of every pixel of a whole field that is not saturated.
+/// Errors in every pixel of a whole field that is not saturated.
 GridErrors errors_of_grid(const std::string& start, const std::string& camera,
                           const std::string& exposure_s, const std::string& pointing = "zenith",
                           const std::string& sky = "dark") {

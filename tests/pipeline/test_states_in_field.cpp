@@ -90,7 +90,7 @@ TEST(StatesInField, ASensorFindsTheSameObjectsAtTheSamePlacesByItsOwnStates) {
       expect_same_field(scene("duration_s: 1200, tick_s: 10",
                               telescope + "{ra_deg: 30, dec_deg: -5, tracking: sidereal}", 20),
                         0);
-  EXPECT_LT(share, 0.02);  // of the sky, its field is 0.0001
+  EXPECT_LT(share, 0.02);  // the field is 0.0001 of the sky
   // Shortlists of several spans of rough places, of a camera that turns with the Earth.
   expect_same_field(scene("duration_s: 1200, tick_s: 10",
                           atlanta + "camera: geo-watch, pointing: {azimuth_deg: 180, "

@@ -20,7 +20,7 @@ TEST(StrayLightInFrame, IsIrradianceTimesTransmittance) {
   const Vec<Gcrs> at_m = unit(Vec<Gcrs>{bodies().sun_m.y, -bodies().sun_m.x, 0}) * 4e8;
   const Vec<Gcrs> to_sun = bodies().sun_m - at_m, to_moon = bodies().moon_m - at_m;
   const Vec<Gcrs> boresight = unit(cross(to_sun, to_moon) + to_sun * 0.1);
-  const auto transmittance = [](double angle_rad) {  // of the table: a decade each 30 deg
+  const auto transmittance = [](double angle_rad) {  // the table falls a decade each 30 deg
     return std::pow(10.0, -4.0 - angle_rad / deg / 30.0);
   };
   Stage stage(stray(at_m, boresight,

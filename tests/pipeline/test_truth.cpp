@@ -9,7 +9,7 @@ const std::string iss =
     "1 25544U 98067A   18020.89808844  .00002078  00000-0  38550-4 0  9992\n"
     "2 25544  51.6424  32.9776 0003646  28.7227  39.5332 15.54190080 95614\n";
 
-/// Of the ISS over a fisheye in the southern Pacific, mid exposure 2018-01-21T00:15:05Z.
+/// The ISS over a fisheye in the southern Pacific, mid exposure 2018-01-21T00:15:05Z.
 std::string scene(const std::string& effects) {
   return test::scenario(
       "2018-01-21T00:15:00Z", 20, "site: {latitude_deg: -23, longitude_deg: -106, height_m: 100}",

@@ -64,7 +64,7 @@ struct Asked {
   FrameHeader header;
   std::string lines;
   int count = 0;
-  double worst_here_px = 0.0;  // of core/wcs/wcs.h
+  double worst_here_px = 0.0;  // error of core/wcs/wcs.h
 };
 
 Asked ask(const CameraCase& c) {

@@ -200,7 +200,7 @@ def chance_limit(n, share=0.0455, rare=1e-3):
 
 
 def judged(pulls, errors):
-    """Of each quantity its row and whether it is as it must be."""
+    """The row of each quantity, and whether it is as it must be."""
     for key in UNITS:
         p = np.array(pulls.get(key, []))
         if not len(p):

@@ -28,7 +28,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("DMISE_DATA", SOURCE.parent / "shared" / "data"))
 CASES = SOURCE.parent / "shared" / "cases"
 STREAK = (818.9, 525.4)  # middle of the one streak, from 0
-TURN = 0.4  # of broad trails to the rows [rad]
+TURN = 0.4  # angle of broad trails to the rows [rad]
 
 
 def add_star(light, x, y, flux):

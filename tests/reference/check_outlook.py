@@ -148,7 +148,7 @@ def counts(binary, directory):
             for key in seen:
                 told, is_ = f[key], real[f"{key}_rendered"]
                 seen[key] += is_
-                # Of stars those that graze the edge with the last of their light are in doubt.
+                # Stars that graze the edge with the last of their light are in doubt.
                 check(abs(told - is_) <= (1 if key == "objects" else 2 + 0.03 * is_),
                       f"{sensor['name']} frame {f['frame']}: {told} {key} told, {is_} drawn")
     check(min(seen.values()) > 20, f"counted in all: {seen}")

@@ -77,7 +77,7 @@ class Lens:
         return math.hypot(self.columns - 1, self.rows - 1) / 2
 
     def truth(self):
-        """Of what the camera file says, by its keys; 0 where a key is left out."""
+        """What the camera file says, by its keys; 0 where a key is left out."""
         t = {"focal_length_m": self.focal_m, "distortion.k1": self.k1, "zero_point_mag": self.zero_point_mag, "psf_fwhm_px": 0.0,
              "psf_field middle": 0.0, "psf_field corner": 0.0}
         if self.growth:
@@ -115,7 +115,7 @@ class Lens:
         return np.maximum(image.array, 0.0)
 
     def gaussian_fwhm_px(self, radius_px):
-        """Of the Gaussian that fits a star by least squares of even weight within two widths of most stars and a pixel, with a level; less
+        """FWHM of the Gaussian that fits a star by least squares of even weight within two widths of most stars and a pixel, with a level; less
         the diffraction. A Moffat is the wider, the wider the window, by 5 to 8 % of it: rounds until it is that of its own width."""
         usual, before = self.fwhm_px, 0.0
         while abs(usual - before) > 1e-4 * usual:

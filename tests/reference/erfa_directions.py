@@ -23,7 +23,7 @@ TOLERANCE_MAS = 5.0
 TOLERANCE_M = 0.01
 LIGHT_M_PER_S = 299792458.0
 DAY_S = 86400.0
-HALF_STEP_S = 0.5  # of the differences that give velocities
+HALF_STEP_S = 0.5  # half the step of the differences that give velocities
 
 
 class Instant:

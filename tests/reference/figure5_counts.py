@@ -37,7 +37,7 @@ from skyfield_directions import read_elements
 LATITUDE, LONGITUDE, HEIGHT_M = 33.777, -84.398, 300.0
 DATA = pathlib.Path(os.environ.get("DMISE_DATA", referee.SOURCE / "../shared/data")) / "tle/catalog_3le_2019-12-19_18470.txt.gz"
 EDGE_DEG = 0.01
-HALF_NORTH, HALF_EAST = 1.0, 2504 / 3326  # of the frame in the tangent plane: 90 deg along its width
+HALF_NORTH, HALF_EAST = 1.0, 2504 / 3326  # half sides of the frame in the tangent plane: 90 deg along its width
 A_M, F = 6378137.0, 1 / 298.257223563
 TIMES = [round(86400 * (k + 0.5) / 10 / 10) * 10 for k in range(10)]  # s, on the grid of 10 s
 

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TARGET = ROOT / "tests/reference/flight_orekit.inc"
 START = (2018, 12, 24, 22, 0, 0.0)  # UTC
 DEGREE = 20
-# Of the case "manoeuvres": a burn, and later a change of velocity at once; radial, transverse, normal.
+# The case "manoeuvres" has a burn, and later a change of velocity at once; radial, transverse, normal.
 BURN = {"at_s": 3600.0, "duration_s": 600.0, "thrust_n": 22.0, "mass_kg": 500.0, "isp_s": 220.0, "direction": (0.48, 0.64, -0.6)}
 IMPULSE = {"at_s": 10000.0, "delta_v_m_per_s": (0.5, -3.0, 2.0)}
 # name, position [m], velocity [m/s], Cd A/m, Cr A/m [m^2/kg], gravity degree, Sun and Moon, tides

@@ -155,7 +155,7 @@ def write_mangled(directory, count=400):
         hdus = [fits.PrimaryHDU(), fits.ImageHDU(image)] if i % 4 == 3 else [fits.PrimaryHDU(image)]
         fits.HDUList(hdus).writeto(held)
         raw = held.getvalue()
-        at = 2880 * (len(hdus) - 1)  # of the image's header; its data fill one block at most
+        at = 2880 * (len(hdus) - 1)  # begin of the image's header; its data fill one block at most
         data = raw[at + 2880:][:image.nbytes]
         cards = [raw[at + k:at + k + 80] for k in range(0, 2880, 80)]
         cards = cards[:cards.index(b"END".ljust(80))]

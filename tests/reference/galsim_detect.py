@@ -208,7 +208,7 @@ class Bounds:
         information = (g / (VARIANCE_E2 + np.maximum(light, 0.0))) @ g.T
         information[-1, -1] += 1 / (0.01 * VARIANCE_E2)
         covariance = np.linalg.inv(information)
-        jacobian = np.zeros((2, len(g)))  # of the centroid, which a slope moves along the line
+        jacobian = np.zeros((2, len(g)))  # derivatives of the centroid, which a slope moves along the line
         jacobian[0, 0] = jacobian[1, 1] = 1.0
         if length > 0:
             jacobian[:, 5] = length / 6 * np.array([c, s])

@@ -28,7 +28,7 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-warnings.simplefilter("ignore")  # of headers that astropy corrects
+warnings.simplefilter("ignore")  # astropy warns about headers that it corrects
 FRAMES = pathlib.Path(os.environ.get("DMISE_DATA", ROOT.parent / "shared/data")) / "validation/frames"
 RANGE_M = 1e9
 LIGHT_M_PER_S = 299_792_458.0
@@ -136,7 +136,7 @@ def is_found(detections, x, y):
 
 
 def probabilities(number):
-    """Of streaks of 13 px at two brightnesses: rendered, and injected into frames without them, with the same skies."""
+    """Streaks of 13 px at two brightnesses: they are found as often rendered as injected into frames without them, with the same skies."""
     site = (33.0, -100.0, 300.0)
     pointing = "{target: GOES 14, tracking: sidereal}"
     only = "{{catalogue: demo, only: [GOES 14], radius_m: {}}}"

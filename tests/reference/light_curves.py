@@ -28,7 +28,7 @@ import referee
 
 SIDE, BIAS, GAIN, READ_E, FULL_E, EXPOSURE_S = 1000, 300.0, 1.0, 5.0, 60000.0, 10.0
 STREAKS, STARS, APART_PX, GATE_PX = 8, 60, 40.0, 4.0
-SHORTEST_FWHMS = 2.0  # of a period
+SHORTEST_FWHMS = 2.0  # least length of a period
 KINDS = ("sine", "sine", "flash", "flash", "blink", "steady")
 CYCLE_BINS = (1, 2, 5, 10, 20.1)
 SNR_BINS = (3, 6, 12, 25, 50.1)
@@ -171,7 +171,7 @@ def on_streak(streak, found):
 
 
 def amplitude_sigma(streak):
-    """Of a sine's amplitude over the mean light, by hand: the information of the line's light, of which the PSF leaves a part, and the error of
+    """Sigma of a sine's amplitude over the mean light, by hand: the information of the line's light, of which the PSF leaves a part, and the error of
     the mean."""
     profile, frequency = streak["profile"], streak["cycles"] / streak["length"]
     left = np.sum(profile * np.cos(2 * np.pi * frequency * 0.1 * (np.arange(len(profile)) - (len(profile) - 1) / 2))) * 0.1

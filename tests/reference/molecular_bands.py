@@ -17,7 +17,7 @@ def rayleigh(um, airmass):
     return np.exp(-airmass / (um**4 * (115.6406 - 1.335 / um**2)))
 
 
-def mean_mag(nm, transmission, low, high):  # of photons of the Sun
+def mean_mag(nm, transmission, low, high):  # weighted by photons of the Sun
     fine = np.arange(low, high + 0.05, 0.1)
     photons = np.interp(fine, g173[:, 0], g173[:, 1]) * fine
     return -2.5 * np.log10((np.interp(fine, nm, transmission) * photons).sum() / photons.sum())

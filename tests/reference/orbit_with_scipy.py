@@ -46,7 +46,7 @@ def vector(state):
 
 
 def residuals(state, start_s, observations, pole):
-    """Of both angles in sigmas: tangents at what was observed."""
+    """Residuals of both angles in sigmas: tangents at what was observed."""
     first = min(o["time_s"] for o in observations) - 1
     last = max(o["time_s"] for o in observations) + 1
     back, on = path(state, start_s, first, pole).sol, path(state, start_s, last, pole).sol

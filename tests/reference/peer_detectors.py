@@ -20,7 +20,7 @@ import referee
 
 COLUMNS = ["x", "y", "length", "width", "snr", "auto_e", "aperture_e"]
 LEAST_PIXELS = 5
-MOST_HALF_PX = 15  # of a filter of source-extractor
+MOST_HALF_PX = 15  # half the width of a filter of source-extractor
 APERTURE_FWHM = 3.0  # diameter of the aperture in units of the point spread's FWHM; its share of a point's light is known
 
 
@@ -144,7 +144,7 @@ def cost_of(command, directory="."):
 
 
 def versions():
-    """Of the others, and of GalSim."""
+    """Versions of the others, and of GalSim."""
     import galsim
     import sep
     said = subprocess.run(["source-extractor", "--version"], capture_output=True, text=True).stdout

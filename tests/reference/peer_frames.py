@@ -51,7 +51,7 @@ NIGHT_SENSOR = """  - {{name: {site}, site: {site}, camera: omnissa, pointing: z
 class Streak:
     line_px: np.ndarray  # n x 2
     signal_e: float
-    snr: float  # of the ideal matched filter
+    snr: float  # by the ideal matched filter
 
     @property
     def length_px(self):
@@ -80,13 +80,13 @@ def sigma_px(fwhm_px):
 
 
 def ideal_snr(signal_e, length_px, noise_e, sigma):
-    """Of the matched filter in white noise: a line of evenly spread light, blurred."""
+    """SNR of the matched filter in white noise: a line of evenly spread light, blurred."""
     length_px = max(length_px, 2 * np.sqrt(np.pi) * sigma)
     return signal_e / (noise_e * np.sqrt(2 * np.sqrt(np.pi) * sigma * length_px))
 
 
 def noise_dn(counts):
-    """Of a pixel, whatever the sky's slope: by differences of neighbours."""
+    """Noise of a pixel, whatever the sky's slope: by differences of neighbours."""
     return 1.4826 * float(np.median(np.abs(np.diff(counts)))) / np.sqrt(2)
 
 

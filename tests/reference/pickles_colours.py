@@ -19,7 +19,7 @@ VEGA_MAG = {"U": 0.024, "B": 0.03, "V": 0.03, "R": 0.03, "I": 0.03}
 
 def band(folder, name):
     rows = np.array([line.split() for line in open(f"{folder}/bessell-{name}.ecsv") if line[0].isdigit()], float)
-    response = rows[:, 1] / rows[:, 0]  # of photons
+    response = rows[:, 1] / rows[:, 0]  # response to photons
     return SpectralElement(Empirical1D, points=rows[:, 0] * u.AA, lookup_table=response / response.max())
 
 

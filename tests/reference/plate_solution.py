@@ -27,7 +27,7 @@ ENOUGH_STARS = 200
 
 
 def product(a, b):
-    """Of quaternions, scalar first."""
+    """Product of quaternions, scalar first."""
     return np.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))])
 
 

@@ -86,7 +86,7 @@ class Scene:
         self.reference = FRAMES // 2
         self.turn = random.uniform(0, 2 * np.pi)
         self.ra, self.dec = random.uniform(0, 360), random.uniform(-40, 50)
-        self.drift = np.zeros(2)  # of the pointing in RA cos dec and Dec [arcsec/s]
+        self.drift = np.zeros(2)  # motion of the pointing in RA cos dec and Dec [arcsec/s]
         if kind == "fixed":
             self.drift[0] = SIDEREAL * np.cos(np.radians(self.dec))
         if kind == "target":
@@ -205,7 +205,7 @@ def is_of(sequence, track, path):
 
 
 def nees_of(sequence, track, path):
-    """Of the position in the detection's frame; of the rate over the sky, where there is a WCS (else None)."""
+    """NEES of the position in the detection's frame, and of the rate over the sky, where there is a WCS (else None)."""
     scene, positions = sequence["scene"], track["sequence"]["positions"]
     home = index_of(sequence, min(positions, key=lambda p: abs(p["after_s"])))
     off = np.array([track["x_px"], track["y_px"]]) - path[home]

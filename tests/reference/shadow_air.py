@@ -103,7 +103,7 @@ def light(r, across, nm, bend, through):
     n_low = 1 + air_at(nm)[0] * density(heights) / RHO0
     impact = n_low * (R + heights)
     seen = np.arcsin(np.minimum(impact / r, 1)) - bend
-    distance = r * np.sin(seen)  # of the undeviated ray from the Earth's centre
+    distance = r * np.sin(seen)  # distance of the undeviated ray from the Earth's centre
     dilution = impact * np.gradient(impact, heights) / (distance * np.gradient(distance, heights))
     gain = np.interp(angle, seen, through * dilution, left=0.0, right=1.0)
     bare = angle > np.arcsin(R / r)

@@ -24,7 +24,7 @@ import referee
 TOLERANCE_PX = 0.3
 WIDEST_DEG = 20.0
 MOST_SOURCES = 500
-DEADLINE_S = 60  # of processor: by the clock it may take long beside others
+DEADLINE_S = 60  # processor time: by the clock it may take long beside others
 NEIGHBOURS = 3  # source-extractor's flags for a blend
 
 # Image height over focal length at an angle from the boresight, and back.

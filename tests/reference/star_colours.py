@@ -23,7 +23,7 @@ for line in gzip.open(data / "stars/bsc5.dat.gz", "rt", encoding="latin-1"):
     try:
         stars.append((float(line[109:114]), float(line[115:120]), line[127:147].strip()))
     except ValueError:
-        pass  # of no known colour
+        pass  # its colour is not known
 for bv in (-0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.9, 1.0, 1.2):
     near = [ub for b, ub, kind in stars if abs(b - bv) < 0.03 and kind.endswith("V") and not kind.endswith("IV")]
     print(f"{{{bv}, {median(near):.2f}}},  // {len(near)}")

@@ -24,7 +24,7 @@ from skyfield_directions import read_elements
 SITES = {"atlanta": (33.777, -84.398, 300.0), "cerro-tololo": (-30.165278, -70.815, 2215.0)}
 ELEMENTS = referee.CATALOGUES / "demo.tle"
 EDGE_DEG, LIMB_M, EARTH_M = 0.03, 40e3, 6371e3
-HALF_WIDE, HALF_HIGH = 1.0, 2504 / 3326  # of the frame in the tangent plane: 90 deg across its width
+HALF_WIDE, HALF_HIGH = 1.0, 2504 / 3326  # half sides of the frame in the tangent plane: 90 deg across its width
 
 SCENARIO = """simulation: {start: 2018-01-21T00:15:00Z, duration_s: 27100, tick_s: 10}
 objects: [{catalogue: demo}]

@@ -97,7 +97,7 @@ def sunlit(p, sun, n=40000):
 
 
 def sphere_light(p, observer, sun):
-    """Of a diffuse sphere, relative: F(phase) / (d R)^2."""
+    """Light of a diffuse sphere, relative: F(phase) / (d R)^2."""
     to_sun, to_observer = sun - p, observer - p
     d, r = np.linalg.norm(to_observer), np.linalg.norm(to_sun)
     phi = np.arccos(to_sun @ to_observer / (d * r))

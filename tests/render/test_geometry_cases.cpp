@@ -34,7 +34,7 @@ TEST(HardGeometry, APlatformThatFillsTheFrameCoversEveryPixel) {
     EXPECT_NEAR(r / (sun_photons * 0.8 / pi), 1.0, 1e-5);  // Lambert: the same everywhere
 }
 
-// Of a plate of 100 km the camera sees what is near, before it and beside it.
+// The camera sees what is near of a plate of 100 km, before it and beside it.
 TEST(HardGeometry, ALargePlatformIsSeenFromNearby) {
   const Mesh mesh = plate(1e5, 1e5, named("white-paint"), named("white-paint"));
   const FacetLight object(mesh, Band{});

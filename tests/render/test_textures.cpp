@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-constexpr int side = 64;  // of every picture [px]
+constexpr int side = 64;  // side of every picture [px]
 
 LinearPicture picture_of(int channels, const auto& value) {
   LinearPicture picture{side, side, channels, {}};

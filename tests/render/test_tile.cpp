@@ -233,7 +233,7 @@ TEST(Tile, WarmPanelsShineInTheThermalBand) {
   const FacetLight object(mesh, thermal);
   const TileCamera camera = camera_around(1.0, far_m, 16);
   const Tile tile = draw(object, {0, 0, 1}, {0, 0, -1}, camera, 0.0, 4);
-  const double expected = object.emitted_photons_per_s_sr({0, 0, -1}) / 4.0;  // of 4 m2
+  const double expected = object.emitted_photons_per_s_sr({0, 0, -1}) / 4.0;  // the plate has 4 m2
   EXPECT_GT(expected, 1e20);
   EXPECT_NEAR(tile.at(8, 8, 0) / expected, 1.0, 1e-5);
 }

@@ -24,7 +24,7 @@ TEST(DirectionGrid, IsRightToATenthOfAPixel) {
     EXPECT_LT(grid.error_px, 0.1) << field_deg;
     EXPECT_TRUE(grid.sky.empty());
   }
-  // Of 180 deg and more: the corners are at 110 deg from the axis for an equisolid lens.
+  // Lenses of 180 deg and more: the corners are at 110 deg from the axis for an equisolid lens.
   for (const Projection& lens :
        {Projection::equidistant, Projection::equisolid, Projection::stereographic}) {
     const DirectionGrid grid = direction_grid(wcs_of(lens, 2000, 2000, 0.066), 2000, 2000);

@@ -106,7 +106,7 @@ TEST(AgentKeys, LeaveTheBytesOfARunAsTheyAre) {
   auto broker = run.start_broker();
   ToyOrbit orbit;
   ToyCamera a("a"), b("b");
-  ToyRecorder recorder({"a", "b"});  // of truth as well, which goes from node to node
+  ToyRecorder recorder({"a", "b"});  // hears truth as well, which goes from node to node
   std::vector<std::future<NodeResult>> nodes;
   nodes.push_back(east.start(orbit));
   nodes.push_back(east.start(a));

@@ -242,7 +242,7 @@ TEST(FrameServer, KeepsNothingForWhoDoesNotRead) {
   auto reader = sensor.reader();
   ask(reader, asking(10));
   EXPECT_EQ(hear(reader).first, 10u);
-  EXPECT_LE(most.load(), 20 * FrameServer::max_unread + 1);  // of 2,000
+  EXPECT_LE(most.load(), 20 * FrameServer::max_unread + 1);  // not the 2,000 that were asked for
 }
 
 TEST(FrameServer, WithKeysAnswersThoseWhoMayComeIn) {

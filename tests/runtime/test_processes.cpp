@@ -296,7 +296,7 @@ TEST(Processes, APythonNodeTakesPartInTheClock) {
   stack.nodes["recorder"] = std::make_unique<Child>(std::vector<std::string>{
       "/usr/bin/python3", node, stack.address, "recorder", "detection/a", "detection/b"});
   stack.expect_all_exit(0);
-  // Of a toy camera: (tick % 3) sets of (tick % 5) detections, two cameras.
+  // A toy camera has (tick % 3) sets of (tick % 5) detections; there are two cameras.
   EXPECT_THAT(stack.nodes["recorder"]->output(), HasSubstr("tick 14 16 detections\n"));
   EXPECT_THAT(stack.nodes["recorder"]->output(), HasSubstr("tick 19 8 detections\n"));
 }

@@ -72,7 +72,7 @@ TEST(Keys, AreMadeInPairsOrNotAtAll) {
   const Keys keys({"a"});
   const std::string secret = keys.directory + "/a.key";
   ASSERT_EQ(unlink(secret.c_str()), 0);
-  EXPECT_THROW(make_key(keys.directory, "a", false), ConfigError);  // of a key that is lost
+  EXPECT_THROW(make_key(keys.directory, "a", false), ConfigError);  // a key is lost
   EXPECT_NE(access(secret.c_str(), F_OK), 0);
 }
 
@@ -209,7 +209,7 @@ TEST(Security, ARunWithKeysGivesTheBytesOfOneWithout) {
   });
   ToyOrbit orbit;
   ToyCamera camera("a");
-  ToyRecorder recorder({"a"});  // of truth as well
+  ToyRecorder recorder({"a"});  // hears truth as well
   auto a = network.start(orbit), b = network.start(camera), c = network.start(recorder);
   EXPECT_EQ(network.master.result.get().exit_code, 0);
   for (auto* node : {&a, &b, &c}) EXPECT_EQ(node->get().exit_code, 0);

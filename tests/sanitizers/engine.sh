@@ -32,7 +32,7 @@ export ASAN_OPTIONS=log_path=$reports/address:detect_leaks=0:detect_stack_use_af
 export UBSAN_OPTIONS=log_path=$reports/undefined:print_stacktrace=1
 code=0
 for program in "${programs[@]}"; do
-  [[ $program != */engine_wheel.py && $program != */engine_commands.py ]] || continue  # of what is released: module and program
+  [[ $program != */engine_wheel.py && $program != */engine_commands.py ]] || continue  # they test what is released: module and program
   "$root/build/client-venv/bin/python" "$program" "$root/build/release/bin/dmise" "$@" || code=$?
 done
 for report in "$reports"/*; do

@@ -21,7 +21,7 @@ struct SimulatedSequence {
 
   bool fixed = true;
   int frames = 8, stars = 60;
-  unsigned field = 7;  // of stars
+  unsigned field = 7;  // seed of the stars
   /// Changes the expected electrons of a frame.
   std::function<void(SimulatedFrame&, int frame)> add = [](SimulatedFrame&, int) {};
   /// Changes the counts of a frame.
@@ -64,7 +64,7 @@ struct SimulatedSequence {
   }
 
  private:
-  /// The same stars of the sky in each frame, also beside the frame in the middle.
+  /// Each frame has the same stars of the sky, also beside the frame in the middle.
   void add_stars(SimulatedFrame& frame) const {
     SimulatedFrame places(frame.header(), 1, 1, 0, field);  // for its random numbers
     const Wcs middle = header(frames / 2).wcs;

@@ -44,7 +44,7 @@ TEST(ApparentStars, AgreeWithAstropyToFiveMilliarcseconds) {
         << row.ra_rad / deg << " " << row.dec_rad / deg;
 }
 
-// The same script, run now for a thousand stars.
+// The script of these rows is run now for a thousand stars.
 TEST(ApparentStars, AThousandAgreeWithAstropyAtRunTime) {
   const std::string python = "/usr/bin/python3";
   DMISE_NEEDS_FILE(python);

@@ -102,7 +102,7 @@ class Tycho2 : public testing::Test {
   const StarMap* map_ = nullptr;
 };
 
-// Of 2,412,252 records 3,301 repeat another. Tycho-2 has 2,539,913 stars in its main part (Hog et
+// 3,301 of 2,412,252 records repeat another. Tycho-2 has 2,539,913 stars in its main part (Hog et
 // al. 2000, A&A 355, L27); the file leaves the brightest to `kstars`.
 TEST_F(Tycho2, HoldsItsStarsOnce) {
   EXPECT_EQ(deep_->catalogue.size(), 2'412'252u - 3'301u);

@@ -25,7 +25,7 @@ struct Spectrum {
   double mean_arcsec = 0.0, rms_arcsec = 0.0, light = 0.0;
 };
 
-/// Of the light of a source at an elevation, cut into cells.
+/// Spectrum of a source at an elevation, cut into cells.
 Spectrum spectrum(const Dispersion& dispersion, double elevation_rad, double bv, int count) {
   std::vector<SpectrumCell> cells;
   dispersion.band().add_cells(airmass(elevation_rad), bv, count, cells);

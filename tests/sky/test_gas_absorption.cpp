@@ -19,7 +19,7 @@ Band top_hat(const char* name, double low_nm, double high_nm) {
   return {name, 0.5 * (low_nm + high_nm) * nm, (high_nm - low_nm) * nm, {}};
 }
 
-/// Of sunlight.
+/// What is absorbed of sunlight.
 double absorption_mag(const Band& band, const AirGases& gases, double airmass) {
   return magnitude_of_light(BandGases(band, {}, gases).of_star(airmass, sun_bv));
 }

@@ -132,7 +132,7 @@ Spectrum vega_to_k() {
 
 /// Vega magnitude a square arc second of a dark zenith.
 double dark_zenith_mag(const Band& band, const SkyParts& parts) {
-  SkyScene paranal = night();  // of ESO's calculator; water: Kerber et al. 2014, MNRAS 439, 247
+  SkyScene paranal = night();  // by ESO's calculator; water: Kerber et al. 2014, MNRAS 439, 247
   paranal.warm_air.pwv_mm = 2.4;
   const SkyModel sky(parts, paranal, band, *extinction_of_site("lick"));
   const double vega = photon_rate_per_m2(vega_to_k(), band) / light_of_magnitude(0.03);

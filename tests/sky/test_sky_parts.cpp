@@ -279,7 +279,7 @@ TEST(LightPollution, LampsHaveTheColoursOfMeasuredOnes) {
   EXPECT_THROW(lamp_spectrum({1, -1, 0}), Error);
 }
 
-// The same, from the measured spectra themselves.
+// Colours of the lamps, from the measured spectra themselves.
 TEST(LightPollution, LampsAgreeWithTheMeasuredSpectra) {
   const struct {
     LampMix lamp;

@@ -166,7 +166,7 @@ TEST_F(StarCache, WhatLeadsAstrayIsPassedOverThoughItIsWhole) {
     }
 }
 
-/// The same values but for one.
+/// A column in which one value is another.
 template <class T>
 Column<T> spoilt(const Column<T>& column, std::size_t i, T value) {
   std::vector<T> values(column.begin(), column.end());

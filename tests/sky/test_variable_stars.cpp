@@ -189,7 +189,7 @@ TEST(VariableStars, AreLookedForWhereTheStarWas) {
   EXPECT_TRUE(VariableStars(map, reading_of({record_at(10, 0, 7, 2)})).stars().empty());
 }
 
-// Of another band than V the catalogue's magnitude is the mean.
+// The catalogue's magnitude is the mean if the record is of another band than V.
 TEST(VariableStars, OfAnotherBandVaryAboutTheCataloguesMagnitude) {
   const StarMap map = map_of({star_at(10, 0, 8)});
   VariableRecord record = record_at(10, 0, 7.5, 2);

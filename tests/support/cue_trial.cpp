@@ -74,14 +74,14 @@ std::vector<CueOutcome> cue_trial(const CueTrialSettings& settings) {
 
   std::map<std::uint32_t, CueOutcome> outcomes;
   std::vector<Task> tasks;
-  std::map<std::uint32_t, std::map<std::uint32_t, int>> objects_of;  // of tracks: detections
+  std::map<std::uint32_t, std::map<std::uint32_t, int>> objects_of;  // by track: detections
   const auto time_of = [](int tick) { return sim_seconds(tick * tick_s); };
   for (int k = 0; k <= settings.ticks; ++k) {
     const SimTime now = time_of(k);
     std::vector<SensorFrame> frames;
     if (k % wide_every == 0) frames = trial.frames(now, std::uint32_t(k / wide_every + 1));
     // Exposures of telescopes that ended since the last tick.
-    std::map<std::string, std::uint32_t> task_of;  // of detections
+    std::map<std::string, std::uint32_t> task_of;  // by detection
     for (const CuedSensor& sensor : sensors)
       for (std::uint32_t n = sensor.first_frame_from(time_of(k - 2));; ++n) {
         const SimTime begins = sensor.exposure_start(n), ends = begins + sim_seconds(0.5);
@@ -111,7 +111,7 @@ std::vector<CueOutcome> cue_trial(const CueTrialSettings& settings) {
         const auto of = task_of.find(id);
         if (of == task_of.end()) continue;
         CueOutcome& outcome = outcomes.at(of->second);
-        if (outcome.track != track.id) continue;  // of another object in the field
+        if (outcome.track != track.id) continue;  // another object is in the field
         const auto task = std::ranges::find(tasks, of->second, &Task::id);
         const auto frame = std::stoul(id.substr(id.find('/') + 1));
         const int exposure = int(frame) - int(task->first_frame) + 1;

@@ -13,15 +13,15 @@ struct CueOutcome {
   int exposures = 0;         // that were made
   int first_detection = 0;   // the exposure of the first detection of its target, from 1; 0: none
   double slew_deg = 0.0, slew_s = 0.0, in_field = 0.0;
-  double sigma_before_m = 0.0;  // of the target's position when the task was given
+  double sigma_before_m = 0.0;  // error of the target's position when the task was given
   double sigma_after_m = 0.0;   // some ticks after its end
   SimTime given, on_target, end;
 };
 
 struct CueTrialSettings {
   std::uint64_t seed = 1;
-  int ticks = 36;              // of 5 s
-  std::size_t objects = 3000;  // of which the network knows none
+  int ticks = 36;              // lasting 5 s each
+  std::size_t objects = 3000;  // none is known to the network
   double detection_probability = 0.83;
 };
 

@@ -14,10 +14,10 @@
 namespace dmise {
 
 struct FusionTrialSettings {
-  std::vector<Site> sites;              // of sensors that look at the zenith
-  double half_angle_rad = 0.0;          // of their fields
-  double sigma_rad = 0.0;               // of detections, along each axis
-  double detection_probability = 0.9;   // of what is lit and brighter than the limit
+  std::vector<Site> sites;              // sensors there look at the zenith
+  double half_angle_rad = 0.0;          // half width of their fields
+  double sigma_rad = 0.0;               // error of a detection along each axis
+  double detection_probability = 0.9;   // for what is lit and brighter than the limit
   double false_alarms_per_frame = 0.0;  // mean
   double limiting_magnitude = 0.0;
   std::size_t max_per_frame = 1000000;
@@ -64,18 +64,18 @@ class FusionTrial {
   Rotation<Gcrs, Itrs> gcrs_from_itrs_;
   Vec<Gcrs> sun_m_;
   std::optional<EarthShadow> shadow_;
-  std::vector<double> lit_;  // of each object now; -1: not known
+  std::vector<double> lit_;  // by object, now; -1: not known
   std::map<std::string, std::uint32_t> truth_;
 };
 
 /// How well tracks divide detections among objects.
 struct TrackingScore {
   std::size_t tracks = 0;      // that were ever confirmed
-  std::size_t of_noise = 0;    // of which most detections are false alarms
+  std::size_t of_noise = 0;    // tracks with mostly false alarms
   std::size_t associated = 0;  // detections of confirmed tracks
-  std::size_t pure = 0;        // of the object that a track has most of
+  std::size_t pure = 0;        // detections of the object that a track has most of
   std::size_t objects = 0;     // with at least `least` detections
-  std::size_t found = 0;       // of these, with a confirmed track
+  std::size_t found = 0;       // with a confirmed track
 
   double purity() const { return associated ? double(pure) / double(associated) : 1.0; }
   double completeness() const { return objects ? double(found) / double(objects) : 1.0; }

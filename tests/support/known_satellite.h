@@ -30,7 +30,7 @@ class KnownSatellite {
   Clock clock_;
   Trajectory orbit_;
   std::vector<MeanElements> elements_;
-  double radius_m_ = 0.0;  // of the sphere of its brightness
+  double radius_m_ = 0.0;  // sphere that is as bright
 };
 
 /// A manoeuvre that the operator has logged, and its size by the element sets around it.

@@ -12,7 +12,7 @@
 // rest.
 namespace dmise::test {
 
-/// Of a field as C reads it: 0 if it is blank.
+/// A field as C reads it: 0 if it is blank.
 inline double number(const std::string& field) { return std::strtod(field.c_str(), nullptr); }
 inline int whole_number(const std::string& field) {
   return int(std::strtol(field.c_str(), nullptr, 10));
@@ -23,7 +23,7 @@ inline double tle_exponent(const std::string& field) {  // " 12345-3" is 0.12345
   return mantissa * std::pow(10.0, whole_number(field.substr(6, 2)));
 }
 
-inline double julian_date_of_year(int year) {  // of January 0, 0h
+inline double julian_date_of_year(int year) {  // at January 0, 0h
   const int y = year - 1;
   const int leap_days = y / 4 - y / 100 + y / 400;
   return 1721424.5 + 365.0 * y + leap_days;

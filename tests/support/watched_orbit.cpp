@@ -13,7 +13,7 @@ namespace {
 
 constexpr double grid_s = 30.0;
 constexpr double gap_s = 900.0;                 // between passes
-const double night_sine = std::sin(-12 * deg);  // of the Sun's elevation
+const double night_sine = std::sin(-12 * deg);  // sine of the Sun's elevation
 
 struct NamedSite {
   std::string name;

@@ -16,7 +16,7 @@ namespace dmise {
 struct OrbitWatcher {
   std::string name;
   Site site;
-  double sigma_rad = 0.0;  // of a direction, along each axis
+  double sigma_rad = 0.0;  // error of a direction, along each axis
   double limiting_magnitude = 0.0;
   double cadence_s = 30.0;
   double min_elevation_rad = 0.0;
@@ -27,7 +27,7 @@ struct OrbitWatcher {
 /// telescopes of 0.4 m, one in either hemisphere: three exposures of a pass at 1 arcsec, as a task
 /// of the fusion node. Sites from 78 N to 44 S.
 std::vector<OrbitWatcher> wide_network();
-/// The same cameras at the eight sites of launch/scenarios/survey.yaml, 40 N to 32 S.
+/// Such cameras at the eight sites of launch/scenarios/survey.yaml, 40 N to 32 S.
 std::vector<OrbitWatcher> survey_network();
 
 /// What watchers detect of one object on a given path, without pixels: directions with errors while

@@ -22,7 +22,7 @@ TEST(DetectionModel, HalfAtHalfAndRisingWithSnr) {
                              .round = {{0.0, 50.0, 0.3}},
                              .round_known = {{0.0, 10.0, 0.3}},
                              .share = 0.9,
-                             .share_points = 0.9};  // of round stars 1
+                             .share_points = 0.9};  // among round stars 1
   EXPECT_NEAR(detection_probability(model, at(20.0, 0.0)), 0.45, 1e-12);
   EXPECT_NEAR(detection_probability(model, at(8.0, 30.0)), 0.45, 1e-12);
   EXPECT_NEAR(detection_probability(model, at(8.0, 1000.0)), 0.45, 1e-12);
@@ -76,7 +76,7 @@ TEST(DetectionModel, ShapesDifferBySecondMoments) {
   EXPECT_NEAR(differ_px(3.0, 3.0, 0.0), 0.0, 1e-12);
   EXPECT_NEAR(differ_px(5.0, 4.0, 1.0), 0.0, 1e-12);   // taken for a star
   EXPECT_NEAR(differ_px(5.0, 3.0, 2.0), 3.5, 1e-12);   // 1.5 + 4 x 0.5
-  EXPECT_NEAR(differ_px(10.0, 6.0, 4.0), 8.0, 1e-12);  // of one direction
+  EXPECT_NEAR(differ_px(10.0, 6.0, 4.0), 8.0, 1e-12);  // along one line
   EXPECT_NEAR(differ_px(4.0, 4.0, std::sqrt(32.0)), std::sqrt(std::sqrt(512.0)), 1e-12);  // across
 }
 

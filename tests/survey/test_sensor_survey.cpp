@@ -211,7 +211,7 @@ TEST(SensorSurvey, OfAClosedShutterHasNothingInIt) {
   std::uint32_t dark = 0;
   for (std::size_t k = 0; k < all.exposures.size(); ++k) {
     SurveyExposure e = left.exposures[k];
-    const double until_s = e.middle.seconds() - 5.0 - 628.95;  // of its begin from the set
+    const double until_s = e.middle.seconds() - 5.0 - 628.95;  // from the set to its begin
     if (until_s < 0.0 || until_s > 300.0) {
       EXPECT_EQ(e.in_field, until_s < 0.0 ? 0u : all.exposures[k].in_field) << k;
       EXPECT_EQ(e.expected, until_s < 0.0 ? 0.0 : all.exposures[k].expected) << k;

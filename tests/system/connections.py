@@ -15,7 +15,7 @@ from disturbance.network import Spread
 from disturbance.scene import NODES, write_scene
 from harness import PATIENCE_S, Failure, Run, check, check_same, products, wait_until
 
-WALL_S = 8.0  # of the undisturbed run
+WALL_S = 8.0  # the undisturbed run takes so long
 BETWEEN_CUTS_S = 0.7
 
 

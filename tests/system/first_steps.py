@@ -37,7 +37,7 @@ def help_of_the_script(binary, directory):
     code, text, _ = call(script, "--help")
     listed = set(re.findall(r"^ {36}([a-z]\S*) ", text, re.MULTILINE))
     built = commands_of(binary)
-    built -= {"demo"}  # of the script, too, which builds first
+    built -= {"demo"}  # the script's, too, which builds first
     check(code == 0 and listed == built, f"./dmise --help lists the built command's {len(built)}: {listed ^ built}")
     for own in ("setup", "build", "demo", "test", "fuzz", "bench", "package", "docs", "clean"):
         check(f"./dmise {own}" in text, f"and its own {own}")

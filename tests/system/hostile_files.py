@@ -11,7 +11,7 @@ import subprocess
 from harness import check, main, write_scenario
 
 PATIENCE_S = 120.0
-MOST_MB = 600  # of resident memory; a list of 15 MB took 3300
+MOST_MB = 600  # resident memory; a list of 15 MB took 3300
 
 SIMULATION = "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 10, tick_s: 5}\n"
 

@@ -60,7 +60,7 @@ def write_oem(path):
         u = math.radians(0.15) + rate * 30 * k
         place = A * math.cos(u), A * math.sin(u) * math.cos(TILT), A * math.sin(u) * math.sin(TILT)
         speed = -A * rate * math.sin(u), A * rate * math.cos(u) * math.cos(TILT), A * rate * math.cos(u) * math.sin(TILT)
-        second = 15 * 60 + 37 + 30 * k  # of TAI
+        second = 15 * 60 + 37 + 30 * k  # TAI
         numbers = " ".join(f"{x / 1e3:.12f}" for x in (*place, *speed))
         lines.append(f"2018-01-21T00:{second // 60:02d}:{second % 60:02d} {numbers}")
     path.write_text("CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2018-01-20T00:00:00\nORIGINATOR = DMISE\nMETA_START\n"

@@ -39,7 +39,7 @@ def runs(binary, directory, name, output="output: {png: false, positions: [jsonl
 
 
 def positions(out, name):
-    """Of an object at each tick: position and velocity [m, m/s], and its attitude if it has one."""
+    """States of an object at each tick: position and velocity [m, m/s], and its attitude if it has one."""
     rows = [row for row in lines_of(out / "positions.jsonl") if row["name"] == name]
     return [([1e3 * x for x in row["position_km"]], [1e3 * v for v in row["velocity_km_per_s"]], row.get("quaternion"))
             for row in rows]

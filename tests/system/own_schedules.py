@@ -17,7 +17,7 @@ import own_actor
 import own_detector
 from harness import Run, check, main
 
-FAULTS = (  # of an actor and of a detector, and what the run says of each
+FAULTS = (  # an actor's fault, a detector's, and what the run says of each
     ("SIGKILL", "SIGKILL", r"its program was killed \(Killed\)"),
     ("SIGSTOP", "SIGSTOP", r"its program has not answered for (?P<silent>\d+\.\d) s"),
     ("raises", "raises", r"ValueError: no (fuel|stars) \(wrong.py:\d+\)"),

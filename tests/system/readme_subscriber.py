@@ -16,7 +16,7 @@ import sys
 from harness import PATIENCE_S, Run, check, main, wait_until, write_scenario
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-START = datetime.datetime(2018, 1, 21, 0, 15, tzinfo=datetime.timezone.utc)  # of the harness's scenarios
+START = datetime.datetime(2018, 1, 21, 0, 15, tzinfo=datetime.timezone.utc)  # start of the harness's scenarios
 
 
 def said(directory, *command):

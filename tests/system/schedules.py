@@ -69,7 +69,7 @@ class Fault:
     at_s: float  # after the launch
     kind: str  # kill, stop, cut, disk, interrupt
     victim: str = ""
-    lasts_s: float = 0.0  # of stop; 0: for ever
+    lasts_s: float = 0.0  # length of a stop; 0: for ever
 
     def __str__(self):
         return f"{self.kind} {self.victim} at {self.at_s:.2f} s{f' for {self.lasts_s:.1f} s' if self.lasts_s else ''}"

@@ -14,7 +14,7 @@ source "$tests/stack/products.sh"
 jobs=$(readlink -f "$tests/../../launch/stack/slurm")
 scenario=$tests/stack/scenario.yaml
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
-PYTHONPATH=$(readlink -f "$tests/../../build/python")  # of the own node
+PYTHONPATH=$(readlink -f "$tests/../../build/python")  # for the own node
 export PYTHONPATH
 
 skip() {

@@ -315,7 +315,7 @@ fi
 "$dmise" run "$DMISE_SCENARIOS/scenario.yaml" --out "$work/reference" >"$work/run.log" 2>&1 ||
   die "dmise run: $(tail -n 1 "$work/run.log")"
 start_daemon inside
-remove_containers  # of a test that was cut short
+remove_containers  # a test may have been cut short
 [[ -z $given ]] || DMISE_IMAGE=$(docker load -q <"$given" | sed -n 's/^Loaded image: //p')
 check_image
 make_keys

@@ -119,7 +119,7 @@ def hostile_clients_do_not_disturb(url, seed=7):
             bytes_ = draw.randbytes(draw.randrange(1, 3000))
             if trial % 3 == 1:
                 bytes_ = handshake + bytes_
-            elif trial % 3 == 2:  # of the right form, one byte changed
+            elif trial % 3 == 2:  # a handshake with one byte changed
                 at = draw.randrange(len(handshake))
                 bytes_ = handshake[:at] + draw.randbytes(1) + handshake[at + 1:] + bytes_
             try:

@@ -207,7 +207,7 @@ TEST(HostBarrier, IsReadyWhenAllAre) {
   EXPECT_FALSE(host.barrier.all_ready());
 }
 
-// Of an agent that follows a lost one: its nodes join one by one, and the first must not speak for
+// Nodes of an agent that follows a lost one join one by one, and the first must not speak for
 // those who are not back.
 TEST(HostBarrier, TellsNothingBeforeAllWhoBelongToTheHostAreThere) {
   HostBarrier barrier({});

@@ -32,7 +32,7 @@ FoundSource detection_at(double x_px, double y_px, double end1_x_px, double end2
   return found;
 }
 
-/// Of two streaks one is found, its ends 1 and 2 px too short; another detection is of neither.
+/// One of two streaks is found, its ends 1 and 2 px too short; another detection is of neither.
 DetectorFigures figures(double end1_x_px = 21.0) {
   ScoredDraws drawn;
   drawn.probability = {{{"1", "a"}, 0.9}, {{"1", "b"}, 0.5}};

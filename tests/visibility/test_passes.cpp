@@ -21,7 +21,7 @@ struct SkyfieldPass {
 constexpr SkyfieldPass skyfield[] = {
 #include "tests/visibility/passes_reference.inc"
 };
-// The same over the day after a leap second, with elements from before it.
+// Passes over the day after a leap second, by skyfield too, with elements from before it.
 constexpr SkyfieldPass after_leap_second[] = {
 #include "tests/visibility/passes_after_leap_second.inc"
 };

@@ -66,8 +66,8 @@ void change(Message& m, const FieldDescriptor* f) {
 #undef DMISE_CHANGE
 }
 
-/// Calls `visit` once for each field of `m`, at any depth, while it alone has another value. Of
-/// lists the first element stands for all.
+/// Calls `visit` once for each field of `m`, at any depth, while it alone has another value. The
+/// first element of a list stands for all.
 void for_each_changed_field(Message& m, const std::string& path, const Visit& visit) {
   const auto* r = m.GetReflection();
   for (int i = 0; i < m.GetDescriptor()->field_count(); ++i) {

@@ -267,16 +267,16 @@ TEST(Wire, ElementSetsOfARosterLieInTheStatedOrder) {
   EXPECT_EQ(number(0, 1), elements[1].epoch_jd1);
   EXPECT_EQ(number(3, 2), elements[2].eccentricity);
   EXPECT_EQ(number(8, 0), elements[0].bstar_per_earth_radius);
-  expect_unsent<ObjectRoster>([](auto& r) { r.elements.resize(6); });  // of 5 objects
+  expect_unsent<ObjectRoster>([](auto& r) { r.elements.resize(6); });  // there are 5 objects
   expect_unsent<ObjectRoster>([](auto& r) { r.elements[1].eccentricity = NAN; });
 }
 
 TEST(Wire, AttitudesMustBeRotationsOfObjectsThatAreThere) {
-  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 7; });   // of 7
+  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 7; });   // there are 7 objects
   expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 0; });   // not ascending
   expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[0] = 0.6; });  // not of length 1
   expect_unsent<ObjectStates>(
-      [](auto& s) { s.gcrs_from_body[1] = 1.0; });  // of an object without a state
+      [](auto& s) { s.gcrs_from_body[1] = 1.0; });  // an object without a state
   expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body.pop_back(); });
   expect_unsent<ObjectStates>([](auto& s) {  // two of one object, each a rotation
     s.attitude_object[1] = 0;

@@ -9,8 +9,8 @@ import { colour_of, palette } from "./palette";
 
 const field_length_m = 1.5e6, detection_length_m = 3e6;
 const most_lines = 2000;
-const scene_interval_ms = 200; // of the globe with what stands on it; a camera that is moved does not wait
-const sun_step_ms = 120_000; // of simulated time: half a degree of the terminator
+const scene_interval_ms = 200; // between pictures of the globe with what stands on it; a camera that is moved does not wait
+const sun_step_ms = 120_000; // simulated time: half a degree of the terminator
 const most_named = 30, most_labels = 40; // sensors, tracks with names
 
 const metres = (km: ArrayLike<number>, i = 0): Cesium.Cartesian3 =>
@@ -32,8 +32,8 @@ export class Globe {
   private roster: [number, string][] = [];
   private selected = "";
   private started = false;
-  pictures = 0; // of the objects
-  scenes = 0; // of the globe
+  pictures = 0; // how many of the objects were drawn
+  scenes = 0; // how many of the globe were drawn
   named: { left: number; top: number; right: number; bottom: number }[] = []; // where names stand, in pixels of the canvas
   private scene_ms = 0;
   private scene_wanted = false;

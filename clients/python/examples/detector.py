@@ -3,7 +3,7 @@ explains it. It does not know the stars: frames of a camera that follows them ne
 import dmise
 import numpy as np
 
-HALF_PX = 3  # of the window around a peak
+HALF_PX = 3  # half the window around a peak
 
 
 @dmise.detector

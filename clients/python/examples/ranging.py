@@ -8,7 +8,7 @@ LIGHT_M_PER_S = 299792458.0
 
 @dmise.sensor
 def station(exposure, world, options):
-    truth = world.truth  # of all objects: arrays 3 x n
+    truth = world.truth  # states of all objects: arrays 3 x n
     line_m = truth.position_m - exposure.position_m[:, None]
     line_m = line_m - truth.velocity_m_per_s * (np.linalg.norm(line_m, axis=0) / LIGHT_M_PER_S)  # when the light left them
     range_m = np.linalg.norm(line_m, axis=0)

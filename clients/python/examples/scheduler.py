@@ -21,7 +21,7 @@ from astropy.time import Time
 from astropy.utils import iers
 from dmise.dynamics import apparent_direction, pole_of, propagate
 
-FIRST_LEAD_S, LEAD_S = 12.0, 3.0  # of a slew across the sky, and of the short one after it
+FIRST_LEAD_S, LEAD_S = 12.0, 3.0  # for a slew across the sky, and for the short one after it
 SIDEREAL = 1.00273791  # sidereal seconds a second
 iers.conf.auto_download = False
 

@@ -6,7 +6,7 @@ from dmise.dynamics import apparent_direction, pole_of, propagate
 from dmise.orbit_fit import fit_orbit, is_bound, triangulate, velocity_between
 
 POINTING = (float(sys.argv[2]) / 206264.8) ** 2 * np.eye(2)
-STEPS = np.diag([10.0] * 3 + [0.01] * 3)  # of derivatives: m, m/s
+STEPS = np.diag([10.0] * 3 + [0.01] * 3)  # steps of derivatives: m, m/s
 
 def derivative(function, x):
     return np.column_stack([(function((x + d)[:, None]) - function((x - d)[:, None]))[:, 0] / 2 / d.sum() for d in STEPS])

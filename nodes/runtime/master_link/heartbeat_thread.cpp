@@ -20,7 +20,7 @@ namespace {
 /// Between checks of connections, while there are any.
 constexpr std::chrono::milliseconds look_interval{50};
 constexpr int questions_at_once = 64;
-constexpr std::chrono::seconds gone_after{5};  // of a time-master that is silent after the end
+constexpr std::chrono::seconds gone_after{5};  // for a time-master that is silent after the end
 
 }  // namespace
 

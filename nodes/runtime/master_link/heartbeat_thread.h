@@ -23,7 +23,7 @@ struct HeartbeatOptions {
   std::chrono::nanoseconds stop_within{0};  // ends the process if a step lasts longer than this
                                             // after the end of the run or `stop`; 0: never
   const Event* stop = nullptr;              // may be null
-  std::function<std::uint64_t()> progress;  // of the step; called from the heartbeat thread
+  std::function<std::uint64_t()> progress;  // how far the step is; called from the heartbeat thread
   std::function<std::vector<SharedFrames>(const v1::ResendRequest&)> resend;
   // May be empty; called from the heartbeat thread.
   std::function<void(v1::Heartbeat*)> add_to_heartbeat;
@@ -58,7 +58,7 @@ class HeartbeatThread {
   HeartbeatOptions options_;
   zmq::socket_t heartbeat_;
   std::optional<zmq::socket_t> resend_;
-  std::optional<PeerMonitor> askers_;  // of `resend_`
+  std::optional<PeerMonitor> askers_;  // who is connected to `resend_`
   Event quit_;
   Event news_;
   std::atomic<bool> computing_{false};

@@ -88,7 +88,7 @@ class MasterLink {
   const Event* stop_;
   std::string name_;
   zmq::socket_t control_;
-  zmq::socket_t breaks_;  // of `control_`
+  zmq::socket_t breaks_;  // tells when `control_` breaks
   zmq::socket_t ticks_;
   std::unique_ptr<HeartbeatThread> heartbeat_;
   std::vector<zmq::pollitem_t> items_;

@@ -39,7 +39,7 @@ class FrameServer {
 
  private:
   struct Reader {
-    std::uint64_t order = 0;  // of the request
+    std::uint64_t order = 0;  // place among all requests
     bool waits = false;
     v1::FrameRequest request;
     std::shared_ptr<std::atomic<int>> unread = std::make_shared<std::atomic<int>>(0);

@@ -340,7 +340,7 @@ class Node {
   std::optional<Outbox> outbox_;  // used by the heartbeat thread, must outlive it
   MasterLink link_;
   zmq::socket_t publish_, direct_;
-  std::optional<PeerMonitor> listeners_;  // of `direct_`
+  std::optional<PeerMonitor> listeners_;  // who is connected to `direct_`
   nanoseconds next_look_{0};
   std::optional<FrameServer> frames_;
   BrokerConnection broker_{publish_};

@@ -25,13 +25,13 @@ struct NodeOptions {
 
 struct NodeResult {
   int exit_code = 0;   // 0, 1, or 2 for an invalid configuration
-  std::string reason;  // of a code other than 0, one line
+  std::string reason;  // why it is not 0, one line
   Tick done = -1;      // last tick done
   TimeSplit times;
   std::uint64_t refused = 0;  // messages that failed a check
   std::string last_refusal;
   std::uint64_t resend_requests = 0;        // requests for missing messages
-  std::uint64_t resend_requests_known = 0;  // of these, for messages known to be published
+  std::uint64_t resend_requests_known = 0;  // requests for messages known to be published
   std::uint64_t lost = 0;                   // dropped by `lose_every`
   std::uint64_t missed = 0;                 // messages no longer available; of an observer
 };

@@ -89,7 +89,7 @@ class NodeInputs {
   std::vector<zmq::socket_t*> sockets_;              // all receiving sockets
   bool may_miss_ = false;
   std::chrono::nanoseconds asked_{0};
-  enum class Missing { nothing, quiet, gap } missing_ = Missing::nothing;  // of the awaited tick
+  enum class Missing { nothing, quiet, gap } missing_ = Missing::nothing;  // at the awaited tick
   std::chrono::nanoseconds quiet_{0};
   std::chrono::nanoseconds gap_{0};
   std::chrono::nanoseconds again_{0};  // least patience after a request at this tick
@@ -98,7 +98,7 @@ class NodeInputs {
   std::uint64_t asked_again_ = 0;
   std::uint64_t asked_for_known_ = 0;
   int lose_every_ = 0;
-  std::uint64_t countdown_ = 0, lost_ = 0;  // of lose_every
+  std::uint64_t countdown_ = 0, lost_ = 0;  // counted for `lose_every_`, and lost by it
   std::uint64_t received_ = 0;
   std::uint64_t forged_said_ = 0;
 };

@@ -36,15 +36,15 @@ struct RunStatus {
   Tick granted = -1;
   Tick last_tick = 0;
   SimTime tick_length;
-  std::string start_utc;        // of tick 0; empty if unknown
+  std::string start_utc;        // when tick 0 is; empty if unknown
   std::string scenario_digest;  // empty if unknown
   Tick settled = -1;            // last tick done by all
   bool paused = false;
   double pace = 0.0;           // simulated seconds per second asked for; 0: as fast as possible
   std::uint64_t overruns = 0;  // ticks behind real time
   double worst_lag_s = 0.0;
-  std::uint64_t digest = 0;  // of everything published in settled ticks
-  BrokerEndpoints broker;    // of the last broker; empty before the first
+  std::uint64_t digest = 0;  // everything published in settled ticks
+  BrokerEndpoints broker;    // where the last broker is; empty before the first
   std::vector<NodeStatus> nodes;
   std::vector<std::string> missing;
   std::vector<std::string> holding;  // nodes that the clock waits for

@@ -11,7 +11,7 @@ std::string last_line(const std::string& path) {
   std::string line, last;
   while (std::getline(file, line))
     if (!line.empty()) last = line;
-  if (last.starts_with('{'))  // of a log in JSON
+  if (last.starts_with('{'))  // a log in JSON
     if (const auto event = nlohmann::json::parse(last, nullptr, false); event.is_object())
       return event.value("text", last);
   constexpr std::string_view before_message = " error: ";  // follows time, node and level

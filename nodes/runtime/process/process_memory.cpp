@@ -41,7 +41,7 @@ double process_age_s() {
   if (name_end == std::string::npos) return 0.0;
   std::istringstream fields(text.substr(name_end + 1));
   std::string skipped;
-  for (int field = 3; field < 22; ++field) fields >> skipped;  // of proc(5)
+  for (int field = 3; field < 22; ++field) fields >> skipped;  // numbered as in proc(5)
   double began = 0.0;
   fields >> began;
   timespec now{};

@@ -93,7 +93,7 @@ class Inbox {
                                // everything is requested from the publisher from then on
     bool unannounced = false;  // manifests arrive only after the publisher was asked: it is behind
                                // an agent whose other nodes wait for this one
-    std::uint64_t next_sequence = 1;  // of the next message to count
+    std::uint64_t next_sequence = 1;  // the next message that counts
     Tick complete_to = -1;
     Tick closed_from = INT64_MAX;
     std::map<std::uint64_t, Waiting> waiting;    // do not count yet

@@ -28,7 +28,7 @@ std::vector<SharedFrames> Outbox::probes() const {
 }
 
 std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& messages) {
-  std::map<std::string, const Message*> last;  // of each topic
+  std::map<std::string, const Message*> last;  // the last message by topic
   for (const Message& message : messages) {
     if (std::find(topics_.begin(), topics_.end(), message.topic) == topics_.end())
       throw Error(publisher_ + " published on " + message.topic + ", which is not its own");

@@ -58,7 +58,7 @@ class Outbox {
   std::uint64_t incarnation_;
   std::vector<std::string> topics_;
   Tick keep_ticks_;
-  std::map<std::string, Schedule> schedules_;  // of topics, if not every tick
+  std::map<std::string, Schedule> schedules_;  // only topics not published at every tick
   std::map<std::string, std::uint64_t> sequence_;
   TickTally tally_;
   mutable std::mutex mutex_;  // guards what follows

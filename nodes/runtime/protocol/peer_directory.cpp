@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-/// Of one process: its heartbeats come over another connection than that which stands for it, and
+/// Connections of one process: its heartbeats come over another than that which stands for it, and
 /// either may have been replaced.
 constexpr std::size_t most_proved = 4;
 

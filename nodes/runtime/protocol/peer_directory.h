@@ -12,7 +12,7 @@ namespace dmise {
 
 /// A process that has joined.
 struct Peer {
-  std::string routing_id;  // of its connection
+  std::string routing_id;  // identifies its connection
   std::uint64_t incarnation = 1;
   v1::Join join;  // its Join message
   std::uint64_t heartbeat_token = 0;

@@ -21,7 +21,7 @@ struct AllowedKey {
   std::string name;
   std::string public_key;
   bool truth = false;
-  std::set<std::string> nodes;  // of an agent: nodes that it may speak for
+  std::set<std::string> nodes;  // nodes that an agent may speak for
 };
 
 /// Creates NAME.key (mode 0600: both keys) and NAME.pub (public key and grants: "truth", `nodes`

@@ -9,7 +9,7 @@ import time
 from disturbance.schedule import FOR_EVER
 from harness import command_of, wait_until
 
-DUTY_ON_S, DUTY_OFF_S = 0.05, 0.08  # of a process that is slowed
+DUTY_ON_S, DUTY_OFF_S = 0.05, 0.08  # a process that is slowed runs and rests
 AGAIN_S = 0.3  # between two tries to start a process again
 
 

@@ -5,7 +5,7 @@ import random
 
 from disturbance.scene import EVERYBODY, NODES, SENSORS, SILENT_AFTER_S
 
-WALL_S = 4.0  # of the undisturbed run
+WALL_S = 4.0  # the undisturbed run takes so long
 POLICIES = ("fail", "wait", "restart", "drop")
 FOR_EVER = float("inf")
 
@@ -15,7 +15,7 @@ class Fault:
     at_s: float  # after the first frame; of early ones, after the start
     kind: str  # kill, stop, slow, cut, narrow
     victim: str
-    lasts_s: float = 0.0  # of stop, slow, cut and narrow; of kill, until another is started by hand
+    lasts_s: float = 0.0  # how long a stop, a slowing, a cut or a narrowing lasts; a kill, until another is started by hand
 
     def __str__(self):
         lasts = "" if not self.lasts_s else " for ever" if self.lasts_s == FOR_EVER else f" for {self.lasts_s:.2f} s"

@@ -15,7 +15,7 @@ class Case:
     hosts: int            # > 0: sensors behind so many agents
     growth_mib: float     # most that a process may grow from the attack on
     may_fail: bool        # the run may end with an exit code other than 0 that names its cause
-    wall_s: float         # of the undisturbed run
+    wall_s: float         # time of the undisturbed run
     late_s: float         # most that the attack may delay its end
     all: ClassVar[list] = []
 

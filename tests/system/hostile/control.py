@@ -12,7 +12,7 @@ from harness import check, wait_until
 from hostile.case import case
 from hostile.wire import node_pb2, time_pb2
 
-LOG_MOST_BYTES = 100_000  # of the time-master, whatever strangers say
+LOG_MOST_BYTES = 100_000  # log of the time-master, whatever strangers say
 
 
 def spoken(run_id=0, **body):

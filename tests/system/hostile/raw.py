@@ -26,7 +26,7 @@ def connect(port, socket_type):
 
 def pour(peers, seconds, chunk=SMALL_FRAME * 30_000):
     """Frames of a message without end over each, for so long; returns bytes sent and how many were cut."""
-    rest = {peer: b"" for peer in peers if peer}  # of a chunk that was taken in part
+    rest = {peer: b"" for peer in peers if peer}  # what is left of a chunk that was taken in part
     sent, cut, until = 0, 0, time.monotonic() + seconds
     while rest and time.monotonic() < until:
         for peer in select.select([], list(rest), [], 0.1)[1]:

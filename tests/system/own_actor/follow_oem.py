@@ -2,7 +2,7 @@
 import dmise
 import mortal
 
-KNOTS = 4  # of degree 7
+KNOTS = 4  # for a polynomial of degree 7
 _knots = []
 
 

@@ -31,7 +31,7 @@ from .scenario_text import Scenario
 if TYPE_CHECKING:
     from .frame_stream import FrameStream as FrameStream
 
-_MEMBERS = {"image.npy", "mask.npy", "labels.json"}  # of each frame; docs/datasets.md has what else there may be
+_MEMBERS = {"image.npy", "mask.npy", "labels.json"}  # every frame has these; docs/datasets.md has what else there may be
 
 
 def mask_of(segmentation: dict[str, Any]) -> ArrayLike:
@@ -67,7 +67,7 @@ class Sample:
         return list(self.labels["objects"])
 
     def masks(self) -> list[ArrayLike]:
-        """Of each object its own mask, rows x columns bool; they may overlap."""
+        """A mask for each object, rows x columns bool; they may overlap."""
         return [mask_of(found["segmentation"]) for found in self.objects]
 
 

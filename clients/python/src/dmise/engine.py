@@ -12,7 +12,7 @@ except ImportError as missing:
                       "checkout (docs/python.md)", name="dmise._engine") from None
 
 core: Any = _engine
-streams: weakref.WeakSet[Any] = weakref.WeakSet()  # of frames, whose threads wait until they are asked
+streams: weakref.WeakSet[Any] = weakref.WeakSet()  # streams of frames, whose threads wait until they are asked
 
 
 def _end() -> None:

@@ -46,7 +46,7 @@ class Frame:
         from astropy.wcs import WCS
 
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of headers that astropy corrects
+            warnings.simplefilter("ignore")  # astropy warns about headers that it corrects
             return WCS(self.header)
 
 
@@ -76,7 +76,7 @@ class Frames:
         if address is None and directory is None:
             raise ValueError("an address or a directory is needed")
         self._sensors, self._latest, self._directory = sensors, latest, directory
-        self._options = options  # of `subscribe`
+        self._options = options  # passed on to `subscribe`
         self._keys = keys_.Keys(options["keys"], options["name"]) if options["keys"] else None
         self._closing = threading.Event()
         self._readers: dict[str, FrameEndpoint] = {}  # by sensor

@@ -41,7 +41,7 @@ class FrameStream(IterableDataset):  # type: ignore[misc]
     def own_seeds(self) -> Iterable[int]:
         """The seeds that this worker makes."""
         worker, workers = self.worker, self.workers
-        if (info := get_worker_info()) is not None:  # of a DataLoader with workers
+        if (info := get_worker_info()) is not None:  # this is a worker of a DataLoader
             worker, workers = worker * info.num_workers + info.id, workers * info.num_workers
         return self.seeds[worker::workers]
 

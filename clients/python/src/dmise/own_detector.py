@@ -53,7 +53,7 @@ class SensorFrame:
     number: int  # from 1
     tick: int
     counts: npt.NDArray[np.uint16]
-    header: dict[str, CardValue]  # of the FITS file
+    header: dict[str, CardValue]  # cards of the FITS file
     node: str = ""
 
     @property

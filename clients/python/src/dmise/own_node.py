@@ -32,10 +32,10 @@ class World:
     start_utc: datetime.datetime | None = field(repr=False)
     node: str = ""
     objects: list[str] = field(default_factory=list)  # those that it moves or turns, in the order of arrays
-    seed: int = 0  # of the scenario
+    seed: int = 0  # seed of the scenario
     known: Known = field(default_factory=Known)  # to a tracker
     messages: tuple[Any, ...] = field(default=(), repr=False)  # that came since the last tick, OwnNodeHeard each
-    truth: ObjectStates | None = field(default=None, repr=False)  # of all objects at mid exposure, to a sensor with `truth: on`
+    truth: ObjectStates | None = field(default=None, repr=False)  # all objects at mid exposure, to a sensor with `truth: on`
 
     @functools.cached_property
     def topics(self) -> dict[str, list[Any]]:

@@ -21,7 +21,7 @@ from .own_served import Served, list_of, number_of, numbers_in, one_by_one, vari
 from .records import Floats
 from .world import ObjectRoster, ObjectStates
 
-ROUNDING_NS = 1000  # of times in seconds
+ROUNDING_NS = 1000  # times in seconds are rounded by no more
 
 
 @dataclass
@@ -36,7 +36,7 @@ class Exposure:
     start_ns: int
     middle_ns: int
     end_ns: int
-    position_m: Floats  # of the sensor in GCRS, at mid exposure
+    position_m: Floats  # where the sensor is in GCRS, at mid exposure
     velocity_m_per_s: Floats
 
 

@@ -55,7 +55,7 @@ class _Conversation:
         self._poller = zmq.Poller()
         self._poller.register(self._socket, zmq.POLLIN)
         self._poller.register(self._lost, zmq.POLLIN)
-        self._lock = threading.Lock()  # of the socket while the model works
+        self._lock = threading.Lock()  # held by who uses the socket while the model works
         self._working = False
         self._held: list[list[bytes]] = []  # answers; the other thread's while the model works, as the socket is
         self._held_since_s = 0.0

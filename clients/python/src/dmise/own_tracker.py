@@ -21,7 +21,7 @@ from .own_served import Served, list_of
 from .records import Detection, Floats, FrameReport, Track
 from .world import ObjectRoster
 
-SYMMETRIC_TO = 1e-6  # of the standard deviations' product
+SYMMETRIC_TO = 1e-6  # part of the standard deviations' product
 
 
 @dataclass

@@ -45,7 +45,7 @@ def cards_of(header: Any) -> list[str]:
     """Cards of 80 characters of a header, but those that describe pixels."""
     if header is None:
         return []
-    if hasattr(header, "cards"):  # of astropy; a long text is several cards
+    if hasattr(header, "cards"):  # a header of astropy; a long text is several cards
         images = "".join(card.image for card in header.cards)
         cards = [images[i:i + 80] for i in range(0, len(images), 80)]
     elif isinstance(header, Mapping):

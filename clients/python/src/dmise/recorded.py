@@ -10,7 +10,7 @@ from . import protocol
 from .message import Message
 
 SCHEMA = "dmise.v1.RecordedMessage"
-RUN_CHANNEL, CLOCK_CHANNEL = "run", "clock"  # of Endpoints and of Grants; no topic has such a name
+RUN_CHANNEL, CLOCK_CHANNEL = "run", "clock"  # carry Endpoints and Grants; no topic has such a name
 ENVELOPE, ARRAYS, OTHER_PAYLOAD = 1, 2, 99   # fields of RecordedMessage; others are kinds
 _LENGTH_DELIMITED = 2
 

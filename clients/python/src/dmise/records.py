@@ -60,16 +60,16 @@ class LightPeriod(Record):
 class LightCurve(Record):
     """Light of a streak over time, in bins along its line, from end 1 to end 2."""
     bin_px: float = 0.0
-    along_px: Floats = field(default_factory=no_numbers)  # of the middle of a bin, from end 1
+    along_px: Floats = field(default_factory=no_numbers)  # middle of each bin, from end 1
     time_s: Floats = field(default_factory=no_numbers)  # after the start of the exposure
     light_e: Floats = field(default_factory=no_numbers)
     sigma_e: Floats = field(default_factory=no_numbers)
-    correlation: Floats = field(default_factory=no_numbers)  # of the errors of a bin and of the next one
+    correlation: Floats = field(default_factory=no_numbers)  # between the errors of a bin and of the next one
     period: LightPeriod | None = None
 
     @property
     def covariance_e2(self) -> Floats:
-        """Of the bins' light; without the small covariances of bins that are no neighbours."""
+        """Covariance of the bins' light; without the small covariances of bins that are no neighbours."""
         both = self.correlation[:-1] * self.sigma_e[:-1] * self.sigma_e[1:]
         return np.diag(self.sigma_e ** 2) + np.diag(both, 1) + np.diag(both, -1)
 
@@ -126,11 +126,11 @@ class Detection(Record):
     position_angle_rad: float = 0.0
     magnitude_system: MagnitudeSystem = "v_solar"
     excluded: bool = False  # Sun, Moon or limb was nearer to the axis than the camera allows
-    range_m: float | None = None  # of a sensor that measures it
+    range_m: float | None = None  # if the sensor measures it
     range_sigma_m: float | None = None
     range_rate_m_per_s: float | None = None
     range_rate_sigma_m_per_s: float | None = None
-    light_curve: LightCurve | None = None  # of a streak, where the detector was asked for it
+    light_curve: LightCurve | None = None  # for a streak, where the detector was asked for it
 
     @property
     def time_utc(self) -> datetime.datetime:
@@ -354,7 +354,7 @@ class FrameReport(_Exposure):
     psf_stars: int = 0
     stars_expected: int = 0
     stars_found: int = 0
-    magnitude_system: MagnitudeSystem = "v_solar"  # of all magnitudes here and of the frame's detections
+    magnitude_system: MagnitudeSystem = "v_solar"  # all magnitudes here and of the frame's detections
     solar_colour_mag: float = 0.0  # a magnitude in it less the V-solar one of the same source
     shutter_closed: bool = False  # because of a body that excludes: the frame is dark, and detection_off
     sun_excludes: bool = False  # it was nearer to the axis than the camera allows

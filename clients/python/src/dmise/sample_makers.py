@@ -12,7 +12,7 @@ from .scenario_text import Scenario, source_of
 
 
 def samples_of(scenario: Scenario, seed: Any) -> Any:
-    """Of each frame its key, image, mask and JSON of labels."""
+    """Key, image, mask and JSON of labels of each frame."""
     number = operator.index(seed)
     if not 0 <= number <= core.max_sample_seed:
         raise ScenarioError(f"seed: must be in 0..{core.max_sample_seed}, got {number}")

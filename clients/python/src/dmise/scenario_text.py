@@ -84,7 +84,7 @@ def _plain(value: Any, path: str) -> Any:
     """A value of a mapping as JSON has it, numbers of numpy, times and paths among them."""
     if isinstance(value, Mapping):
         return {str(key): _plain(inner, f"{path}.{key}" if path else str(key)) for key, inner in value.items()}
-    if hasattr(value, "tolist"):  # of numpy
+    if hasattr(value, "tolist"):  # a number or array of numpy
         return _plain(value.tolist(), path)
     if isinstance(value, (list, tuple)):
         return [_plain(inner, f"{path}[{i}]") for i, inner in enumerate(value)]

@@ -19,7 +19,7 @@ _SENT = tuple(re.compile(pattern) for pattern in (
     r"parts/plan\.json", r"dataset-\d{6,}\.tar", r"parts/dataset-\d{6,}\.coco", r"parts/dataset-\d{6,}\.json", r"scenario\.yaml",
     r"coco\.json", r"dataset\.json"))
 _Version = tuple[int, int, int]
-MAX_ROUNDS = 5  # of reading a store that other tasks change
+MAX_ROUNDS = 5  # readings of a store that other tasks change
 
 
 def file_system(url: str, options: Mapping[str, Any] | None) -> tuple[Any, str]:
@@ -68,7 +68,7 @@ class _Mirror:
         self.files.makedirs(f"{self.root}/parts", exist_ok=True)
         self._require_plan()
         if not (self.local / _MANIFEST).exists():
-            self._remove(_MANIFEST)  # of fewer seeds: it is no longer complete
+            self._remove(_MANIFEST)  # it told of fewer seeds: the set is no longer complete
         for name in self._names():
             if self._sent.get(name) != self._version(name):
                 self.files.put_file(str(self.local / name), f"{self.root}/{name}")

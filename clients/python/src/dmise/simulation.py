@@ -76,7 +76,7 @@ class Simulation:
 
     @property
     def digest(self) -> str:
-        """Of all that determines the products: that of the run."""
+        """A hash of all that determines the products: that of the run."""
         return str(self._core.digest)
 
     @property
@@ -140,7 +140,7 @@ class Simulation:
 
 
 def _warn(stream: Any) -> None:
-    """Of what a run says of its models."""
+    """Warns of what a run says of its models."""
     for note in stream.take_notes():
         warnings.warn(note, RuntimeWarning, stacklevel=3)
 
@@ -181,7 +181,7 @@ class SimulatedFrame:
         from astropy.wcs import WCS
 
         with fits.open(io.BytesIO(self.to_fits())) as hdus, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of headers that astropy corrects
+            warnings.simplefilter("ignore")  # astropy warns about headers that it corrects
             return WCS(hdus[0].header, hdus)
 
     @functools.cached_property
@@ -231,7 +231,7 @@ class SimulatedFrame:
         """A grey picture, for display only, as `dmise run` writes it: wide frames are averaged over squares of pixels."""
         return bytes(self._made.png())
 
-    _repr_png_ = to_png  # of notebooks
+    _repr_png_ = to_png  # notebooks show it
 
     def _need_layers(self) -> None:
         if not self._made.has_layers:

@@ -63,7 +63,7 @@ class Solution:
         from astropy.wcs import WCS
 
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of headers that astropy corrects
+            warnings.simplefilter("ignore")  # astropy warns about headers that it corrects
             return WCS(fits.Header.fromstring("".join(self.cards)))
 
 

@@ -75,7 +75,7 @@ class Subscription:
         self._sockets: dict[str, zmq.Socket] = {}     # by endpoint
         self._observed = ""                           # endpoint of the broker
         self._over_at = 0.0
-        self._came: dict[str, tuple[int, int]] = {}  # of each topic: incarnation, last tick that came
+        self._came: dict[str, tuple[int, int]] = {}  # by topic: incarnation, last tick that came
         self._late_at: dict[str, float] = {}         # when what is late was asked for
         self._master = Master(self._context, address, keys)
         self.run: Any = self._master.ask_and_wait(answer_within_s)

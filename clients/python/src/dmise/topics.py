@@ -4,7 +4,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 
-KINDS = ("state/", "env/", "frame/", "detection/", "track/", "task/", "truth/")  # of DMISE's own nodes
+KINDS = ("state/", "env/", "frame/", "detection/", "track/", "task/", "truth/")  # topics of DMISE's own nodes
 
 
 def is_wanted(wanted: Sequence[str], topic: str) -> bool:

@@ -120,5 +120,5 @@ class ObjectStates(_OfATick):
     attitude_object: npt.NDArray[np.uint32] = field(default_factory=lambda: np.zeros(0, np.uint32))
     gcrs_from_body: Floats = field(default_factory=no_numbers)
     attitude_rate_rad_per_s: Floats = field(default_factory=no_numbers)
-    albedo: Floats = field(default_factory=no_numbers)  # of `count`, < 0: that of the roster; empty: all are
+    albedo: Floats = field(default_factory=no_numbers)  # `count` numbers, < 0: that of the roster; empty: all are
     roster: ObjectRoster | None = field(default=None, repr=False)
