@@ -28,7 +28,8 @@
 namespace dmise {
 namespace {
 
-constexpr double max_kept_s = 18 * 86400.0;  // of runs whose orbits are kept: forces reach 20 days
+constexpr double max_kept_s =
+    18 * 86400.0;  // longest run whose orbits are kept: forces reach 20 days
 
 const Section& simulation_section() {
   static const Section section{

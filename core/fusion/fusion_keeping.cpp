@@ -8,8 +8,8 @@ namespace {
 
 constexpr double arc_gap_s = 300.0;       // without a detection, after which an arc is whole
 constexpr double max_arc_s = 1800.0;      // longest arc: objects that stay in view have many
-constexpr double before_arc_s = 60.0;     // of the prior of an object in no catalogue
-constexpr double prior_inflation = 10.0;  // of its errors: they are of the same detections
+constexpr double before_arc_s = 60.0;     // from the prior of an object in no catalogue to its arc
+constexpr double prior_inflation = 10.0;  // factor of its errors, which are of the same detections
 
 }  // namespace
 

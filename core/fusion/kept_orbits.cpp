@@ -9,7 +9,7 @@ namespace {
 constexpr double ahead_s = 12 * 3600.0;  // first length of a path ahead; it doubles when asked for
 constexpr double sigma_step_s = 1800.0;
 constexpr std::size_t max_tried = 3;  // objects whose manoeuvre may explain an arc, nearest first
-constexpr double reach_sigmas = 3.0;  // of the expected size of a manoeuvre
+constexpr double reach_sigmas = 3.0;  // largest manoeuvre that is tried, in its expected sizes
 // Along the motion a change of velocity moves an object three times as far as it goes in the time.
 constexpr double drift_factor = 3.0;
 

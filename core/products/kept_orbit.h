@@ -38,9 +38,9 @@ struct KeptOrbit {
   double drag_m2_per_kg = 0.0, drag_sigma_m2_per_kg = 0.0;
   double srp_m2_per_kg = 0.0, srp_sigma_m2_per_kg = 0.0;
   std::uint32_t arcs = 0;        // taken so far
-  std::uint32_t detections = 0;  // of this arc
-  std::uint32_t outliers = 0;    // of these left out
-  // Of the arc against the orbit before it: chi-square of `degrees` if nothing happened.
+  std::uint32_t detections = 0;  // in this arc
+  std::uint32_t outliers = 0;    // detections that were left out
+  // Chi-square of the arc against the orbit before it, with `degrees` if nothing happened.
   double innovation_d2 = 0.0;
   std::uint32_t degrees = 0;
   std::optional<KeptManoeuvre> manoeuvre;  // found by this arc
