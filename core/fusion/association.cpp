@@ -16,6 +16,7 @@ constexpr double coarse_sigmas = 5.0;       // reach of the coarse search
 constexpr double largest_radius_rad = 0.2;  // tracks that are known worse are not looked for
 constexpr double min_radius_rad = 1e-4;
 constexpr double earth_m = 6.35e6;
+constexpr double burn_probability = 1e-3;   // a manoeuvre since the last arc
 constexpr double edge_px = 4.0;             // within which a source may be missed
 constexpr double least_looked = 0.05;       // probability of detection that makes a look
 constexpr double certain_sigma_rad = 0.01;  // places known better than this can be missed
@@ -68,8 +69,12 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
         track->rough_sigma_m(settings_.acceleration_noise_m2_per_s3));
   for (const std::size_t i : kept_ ? kept_->objects() : std::vector<std::size_t>{}) {
     if (track_of_[i]) continue;
-    if (const auto place = kept_->place(i, scene.time))
-      add({.object = i}, place->state.position_m, place->state.velocity_m_per_s, place->sigma_m);
+    const auto place = kept_->place(i, scene.time);
+    if (!place) continue;
+    const auto& [state, sigma_m] = *place;
+    add({.object = i}, state.position_m, state.velocity_m_per_s, sigma_m);
+    add({.object = i, .burnt = true}, state.position_m, state.velocity_m_per_s,
+        sigma_m + kept_->burnt_sigma_m(i, scene.time));
   }
   for (std::size_t word = 0; word < inside.size(); ++word)
     for (std::uint64_t bits = inside[word]; bits != 0; bits &= bits - 1) {
@@ -84,7 +89,8 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
 PredictedDirection Fusion::predicted(const Candidate& candidate, const SensorFrame& frame,
                                      const AngleObservation& observation) const {
   if (!candidate.track) {
-    const auto now = believed(candidate.object, observation.time);
+    const auto now = candidate.burnt ? kept_->burnt(candidate.object, observation.time)
+                                     : believed(candidate.object, observation.time);
     return now ? predict_direction(*now, frame.sensor_m, observation.time) : PredictedDirection{};
   }
   const auto out = candidate.track->filter.predict(observation.time, frame.sensor_m);
@@ -129,8 +135,11 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
       const Innovation found = innovation_of(from_line, seen);
       if (!(found.d2 < settings_.gate_d2)) continue;
       const double spread = std::log((2 * pi) * (2 * pi) * found.covariance_rad2.determinant());
-      pairs.push_back({row, k, found.d2 + spread + alone});
-      const double exists = all[k].track ? all[k].track->existence() : 1.0;
+      const double exists = all[k].track   ? all[k].track->existence()
+                            : all[k].burnt ? burn_probability
+                                           : 1.0;
+      const double burn = all[k].burnt ? -2 * std::log(burn_probability) : 0.0;
+      pairs.push_back({row, k, found.d2 + spread + alone + burn});
       likelihoods.push_back(p * exists * std::exp(-(found.d2 + spread) / 2));
     }
   }
@@ -148,7 +157,10 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
     if (columns[row] != unassigned) {
       Candidate& candidate = all[columns[row]];
       const bool fresh = !candidate.track;
-      track = fresh ? begin_catalogued(candidate.object, source.observation.time) : candidate.track;
+      if (!fresh)
+        track = candidate.track;
+      else if (!track_of_[candidate.object])  // else it was seen without its manoeuvre, or with it
+        track = begin_catalogued(candidate.object, source.observation.time, candidate.burnt);
       if (track && track->take(source.observation, source.magnitude, p, others[row])) {
         found[columns[row]] = true;
         if (track->place_roughly(forces_, scene.time) && fresh) scene.placed.push_back(track);

@@ -85,8 +85,8 @@ FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
   return out;
 }
 
-LiveTrack* Fusion::begin_catalogued(std::size_t object, SimTime seen) {
-  const auto now = believed(object, seen);
+LiveTrack* Fusion::begin_catalogued(std::size_t object, SimTime seen, bool burnt) {
+  const auto now = burnt ? kept_->burnt(object, seen) : believed(object, seen);
   if (!now) return nullptr;
   auto prior =
       propagate(forces_, *now, seen - sim_seconds(prior_before_s), {.position_tolerance_m = 1e-2});

@@ -56,7 +56,7 @@ class Fusion {
                                     std::span<const std::uint64_t> inside) const;
   PredictedDirection predicted(const Candidate& candidate, const SensorFrame& frame,
                                const AngleObservation& observation) const;
-  LiveTrack* begin_catalogued(std::size_t object, SimTime seen);
+  LiveTrack* begin_catalogued(std::size_t object, SimTime seen, bool burnt);
   void begin_unknown(const std::vector<LooseSource>& loose);
   void begin_from_arcs(const std::vector<LooseSource>& loose);
   void begin(const StartedOrbit& orbit, int min_detections);
@@ -70,7 +70,7 @@ class Fusion {
   void keep_arcs(SimTime time, std::vector<KeptOrbit>& orbits);
   bool is_closed(const LiveTrack& track, SimTime time) const;
   std::optional<KeptOrbit> keep(LiveTrack& track);
-  std::optional<std::size_t> manoeuvred(const LiveTrack& track, const OrbitState& seen);
+  std::optional<std::size_t> owner_of(const LiveTrack& track, const OrbitState& seen);
   void name_object(std::size_t object, std::uint32_t& catalogue_number, std::string& name) const;
 
   Clock clock_;

@@ -57,7 +57,7 @@ std::optional<KeptOrbit> Fusion::keep(LiveTrack& track) {
     if (!seen) return std::nullopt;
     prior = *seen;
     prior.covariance *= prior_inflation * prior_inflation;
-    if (const auto object = manoeuvred(track, prior.state)) {
+    if (const auto object = owner_of(track, prior.state)) {
       track.object = *object;
       track_of_[*object] = &track;
     }
@@ -77,9 +77,9 @@ std::optional<KeptOrbit> Fusion::keep(LiveTrack& track) {
   return *orbit;
 }
 
-std::optional<std::size_t> Fusion::manoeuvred(const LiveTrack& track, const OrbitState& seen) {
-  return kept_->manoeuvred_to(seen, *track.arc,
-                              [&](std::size_t object) { return track_of_[object] == nullptr; });
+std::optional<std::size_t> Fusion::owner_of(const LiveTrack& track, const OrbitState& seen) {
+  return kept_->owner_of(seen, *track.arc,
+                         [&](std::size_t object) { return track_of_[object] == nullptr; });
 }
 
 void Fusion::name_object(std::size_t object, std::uint32_t& catalogue_number,

@@ -12,6 +12,7 @@ namespace dmise {
 struct Fusion::Candidate {
   LiveTrack* track = nullptr;
   std::size_t object = 0;  // without a track
+  bool burnt = false;      // a kept object as it may be after a manoeuvre
   Vec<Gcrs> direction;     // about, unit
   double range_m = 0.0;    // about
   double radius_rad = 0.0;

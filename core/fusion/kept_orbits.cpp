@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+
+#include "core/fusion/catalogue_prediction.h"
 
 namespace dmise {
 namespace {
@@ -12,6 +15,23 @@ constexpr std::size_t max_tried = 3;  // objects whose manoeuvre may explain an 
 constexpr double reach_sigmas = 3.0;  // largest manoeuvre that is tried, in its expected sizes
 // Along the motion a change of velocity moves an object three times as far as it goes in the time.
 constexpr double drift_factor = 3.0;
+
+constexpr double burn_m_per_s = 0.2;  // usual manoeuvres, one sigma
+
+/// Standard deviations of the place of an orbit a time after a change of velocity, along radius,
+/// motion and normal: four times its size over the mean motion, the drift, and once.
+Eigen::Vector3d burn_sigmas_m(const OrbitState& at, double since_s) {
+  const double turn_rad_per_s =
+      norm(cross(at.position_m, at.velocity_m_per_s)) / dot(at.position_m, at.position_m);
+  const double swing_m = burn_m_per_s / turn_rad_per_s;
+  return {4 * swing_m, std::hypot(4 * swing_m, drift_factor * burn_m_per_s * since_s), swing_m};
+}
+
+/// Whether an orbit explains an arc: without outliers, chi-square within five deviations of its
+/// mean.
+bool explains(const ArcNews& news) {
+  return news.outliers == 0 && news.residual_d2 < news.degrees + 5 * std::sqrt(2.0 * news.degrees);
+}
 
 void sort_by_time(std::vector<AngleObservation>& arc) {
   std::ranges::sort(arc, [](const AngleObservation& a, const AngleObservation& b) {
@@ -99,6 +119,22 @@ Outcome<OrbitEstimate> KeptOrbits::estimate(std::size_t object, SimTime time) {
   return moved_along(forces_, *kept.ahead, kept.last->covariance, time);
 }
 
+double KeptOrbits::burnt_sigma_m(std::size_t object, SimTime time) const {
+  const Kept& kept = objects_.at(object);
+  if (!kept.last) return 0.0;
+  const double since_s = (time - kept.last->state.time).seconds();
+  return burn_sigmas_m(kept.last->state, std::max(0.0, since_s)).norm();
+}
+
+Outcome<OrbitEstimate> KeptOrbits::burnt(std::size_t object, SimTime time) {
+  auto out = estimate(object, time);
+  const Kept& kept = objects_.at(object);
+  if (!out || !kept.last) return out;
+  const double since_s = (time - kept.last->state.time).seconds();
+  add_errors(*out, burn_sigmas_m(out->state, std::max(0.0, since_s)));
+  return out;
+}
+
 Outcome<KeptOrbit> KeptOrbits::take(std::size_t object, const OrbitEstimate& prior,
                                     std::vector<AngleObservation> arc) {
   using Result = Outcome<KeptOrbit>;
@@ -127,7 +163,7 @@ Outcome<KeptOrbit> KeptOrbits::take(std::size_t object, const OrbitEstimate& pri
                 .arcs = kept.arcs,
                 .detections = std::uint32_t(arc.size()),
                 .outliers = std::uint32_t(news->outliers),
-                .innovation_d2 = news->innovation_d2,
+                .innovation_d2 = std::max(0.0, news->innovation_d2),
                 .degrees = std::uint32_t(news->degrees),
                 .manoeuvre = described(news->manoeuvre)};
   for (int row = 0, k = 0; row < 6; ++row)
@@ -136,9 +172,9 @@ Outcome<KeptOrbit> KeptOrbits::take(std::size_t object, const OrbitEstimate& pri
   return out;
 }
 
-std::optional<std::size_t> KeptOrbits::manoeuvred_to(
-    const OrbitState& seen, std::vector<AngleObservation> arc,
-    const std::function<bool(std::size_t)>& may_be) {
+std::optional<std::size_t> KeptOrbits::owner_of(const OrbitState& seen,
+                                                std::vector<AngleObservation> arc,
+                                                const std::function<bool(std::size_t)>& may_be) {
   sort_by_time(arc);
   const double reach_m_per_s =
       reach_sigmas * drift_factor * forces_.settings().manoeuvre_sigma_m_per_s;
@@ -149,14 +185,15 @@ std::optional<std::size_t> KeptOrbits::manoeuvred_to(
     if (!expected) continue;
     const double apart_m = norm(expected->state.position_m - seen.position_m);
     const double since_s = (seen.time - kept.last->state.time).seconds();
-    if (apart_m < reach_m_per_s * since_s + expected->sigma_m) near.emplace_back(apart_m, object);
+    if (apart_m < reach_m_per_s * since_s + reach_sigmas * expected->sigma_m)
+      near.emplace_back(apart_m, object);
   }
   std::ranges::sort(near);
   near.resize(std::min(near.size(), max_tried));
   for (const auto& [apart_m, object] : near) {
     CatalogueObject trial = objects_.at(object).object;
     const auto news = trial.take(arc);
-    if (news && news->manoeuvre && news->outliers == 0) return object;
+    if (news && explains(*news)) return object;
   }
   return std::nullopt;
 }

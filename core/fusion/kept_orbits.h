@@ -30,6 +30,11 @@ class KeptOrbits {
   };
   std::optional<Place> place(std::size_t object, SimTime time);
   Outcome<OrbitEstimate> estimate(std::size_t object, SimTime time);
+  /// The estimate of an object that may have changed its velocity since its last arc, by some
+  /// decimetres a second.
+  Outcome<OrbitEstimate> burnt(std::size_t object, SimTime time);
+  /// Standard deviation of its place [m], at the most.
+  double burnt_sigma_m(std::size_t object, SimTime time) const;
 
   /// Takes an arc of detections, in any order. `prior`: what is believed of an object that is not
   /// kept yet, before the arc. Detections before the last that were taken are left out. Refuses an
@@ -37,11 +42,10 @@ class KeptOrbits {
   Outcome<KeptOrbit> take(std::size_t object, const OrbitEstimate& prior,
                           std::vector<AngleObservation> arc);
 
-  /// The kept object of which a manoeuvre since its last arc explains this one, without outliers;
-  /// `seen`: about where the arc's object is. Only objects that `may_be` are tried.
-  std::optional<std::size_t> manoeuvred_to(const OrbitState& seen,
-                                           std::vector<AngleObservation> arc,
-                                           const std::function<bool(std::size_t)>& may_be);
+  /// The kept object whose orbit, or a manoeuvre since its last arc, explains this one without
+  /// outliers; `seen`: about where the arc's object is. Only objects that `may_be` are tried.
+  std::optional<std::size_t> owner_of(const OrbitState& seen, std::vector<AngleObservation> arc,
+                                      const std::function<bool(std::size_t)>& may_be);
 
  private:
   struct Kept {

@@ -40,7 +40,8 @@ struct KeptOrbit {
   std::uint32_t arcs = 0;        // taken so far
   std::uint32_t detections = 0;  // in this arc
   std::uint32_t outliers = 0;    // detections that were left out
-  // Chi-square of the arc against the orbit before it, with `degrees` if nothing happened.
+  // Chi-square of the arc against the orbit before it, with `degrees` if nothing happened; 0 where
+  // the arc moves a manoeuvre that was known.
   double innovation_d2 = 0.0;
   std::uint32_t degrees = 0;
   std::optional<KeptManoeuvre> manoeuvre;  // found by this arc

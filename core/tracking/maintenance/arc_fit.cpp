@@ -141,6 +141,9 @@ std::string_view ArcFit::linearise() {
   std::vector<VelocityChange> changes;
   for (const ManoeuvreGuess& m : manoeuvres_) changes.push_back(m.change);
   std::ranges::sort(changes, {}, &VelocityChange::time);
+  if (!changes.empty() &&
+      !(start_.time < changes.front().time && changes.back().time < end_of_observations()))
+    return "a manoeuvre is not within its observations";
   auto path = ArcPath::fly(*forces_, start_, changes, end_of_observations());
   if (!path) return path.reason;
   path_ = std::move(*path);

@@ -153,6 +153,8 @@ Outcome<ArcNews> CatalogueObject::take(const std::vector<AngleObservation>& arc)
   for (std::size_t k = 0; k < fit.manoeuvres().size(); ++k) place(fit, k, found[first_fitted_ + k]);
   if (is_settled()) news.manoeuvre = search(before, fit);
   news.outliers = leave_outliers_out(fit, arc.front().time);
+  for (std::size_t i = 0; i < fit.observations().size(); ++i)
+    if (arc.front().time <= fit.observations()[i].time) news.residual_d2 += fit.d2(i);
   manoeuvres_ = std::move(found);
   if (news.manoeuvre) {
     manoeuvres_.push_back(*news.manoeuvre);

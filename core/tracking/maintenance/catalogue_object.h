@@ -20,6 +20,7 @@ struct FoundManoeuvre {
 struct ArcNews {
   double innovation_d2 = 0.0;  // chi-square of `degrees` by the whole arc, if nothing happened
   int degrees = 0;
+  double residual_d2 = 0.0;  // chi-square of the arc by the orbit that has taken it
   std::size_t outliers = 0;  // observations that were left out
   std::optional<FoundManoeuvre> manoeuvre;
 };
