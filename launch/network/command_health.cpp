@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/base/error.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/process/node_health.h"
 
@@ -30,20 +30,24 @@ void check_health(const HealthOptions& options) try {
   throw Error(error.what());
 }
 
-}  // namespace
-
-void add_health_command(CLI::App& app) {
+void add_health_options(CLI::App& command) {
   auto options = std::make_shared<HealthOptions>();
-  auto* command = app.add_subcommand(
-      "health", "Exits with 0 if a node is alive in its run, else with 1, within 2 s");
   command
-      ->add_option(
+      .add_option(
           "name", options->name,
           "name of the node (whose key is used, with --keys), or time-master: the whole run")
       ->required();
-  add_master_option(*command, "--master", options->master)->envname("DMISE_MASTER");
-  command->add_option("--keys", options->keys, "directory with NAME.key")->envname("DMISE_KEYS");
-  command->callback([options] { check_health(*options); });
+  add_master_option(command, "--master", options->master)->envname("DMISE_MASTER");
+  command.add_option("--keys", options->keys, "directory with NAME.key")->envname("DMISE_KEYS");
+  command.callback([options] { check_health(*options); });
+}
+
+}  // namespace
+
+Command health_command() {
+  return {.group = CommandGroup::networks,
+          .summary = "Exits with 0 if a node is alive in its run, else with 1, within 2 s",
+          .add_options = add_health_options};
 }
 
 }  // namespace dmise

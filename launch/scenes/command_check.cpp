@@ -22,7 +22,7 @@
 #include "core/config/sensors/effect_list.h"
 #include "core/orbit/interpolation_error.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/process/host_names.h"
 #include "launch/run/scenario_outlook.h"
@@ -235,27 +235,31 @@ void check(const CheckOptions& options) {
     print_text(scenario, outlook, scene.stars != nullptr);
 }
 
-}  // namespace
-
-void add_check_command(CLI::App& app) {
+void add_check_options(CLI::App& command) {
   auto options = std::make_shared<CheckOptions>();
-  auto* command = app.add_subcommand(
-      "check", "Reads a scenario and its files, reports what each sensor will see, and warns");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_flag("--json", options->json, "print one JSON object");
-  command->add_option("--out", options->out, "also check that products can be written there");
-  auto* keys = command->add_option(
-      "--keys", options->keys,
-      "also check that this directory has the key of every process of a launch");
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_flag("--json", options->json, "print one JSON object");
+  command.add_option("--out", options->out, "also check that products can be written there");
+  auto* keys =
+      command.add_option("--keys", options->keys,
+                         "also check that this directory has the key of every process of a launch");
   command
-      ->add_option("--hosts", options->hosts,
-                   "with --keys: also of this number of agents, as in a launch")
+      .add_option("--hosts", options->hosts,
+                  "with --keys: also of this number of agents, as in a launch")
       ->default_val(0)
       ->check(CLI::Range(0, 10000))
       ->needs(keys);
-  add_number_option(*command, "--limb-deg", options->limb_deg, 0.0, 180.0,
+  add_number_option(command, "--limb-deg", options->limb_deg, 0.0, 180.0,
                     "warn of cameras in orbit that point nearer to the Earth's limb");
-  command->callback([options] { check(*options); });
+  command.callback([options] { check(*options); });
+}
+
+}  // namespace
+
+Command check_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary = "Reads a scenario and its files, reports what each sensor will see, and warns",
+          .add_options = add_check_options};
 }
 
 }  // namespace dmise

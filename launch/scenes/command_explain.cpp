@@ -17,7 +17,7 @@
 #include "core/config/scenario.h"
 #include "core/plan/plan_json.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/run/scenario_outlook.h"
 #include "sensors/outlook/outlook_text.h"
 #include "sensors/outlook/plan_outlook.h"
@@ -176,22 +176,25 @@ void explain(const ExplainOptions& options) {
   if (options.json) std::printf("%s\n", json.take().c_str());
 }
 
-}  // namespace
-
-void add_explain_command(CLI::App& app) {
+void add_explain_options(CLI::App& command) {
   auto options = std::make_shared<ExplainOptions>();
-  auto* command = app.add_subcommand(
-      "explain",
-      "Shows at which level each effect runs in a sensor's frames, why, and what it costs");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--sensor", options->sensor, "only this sensor");
-  command->add_option("--frames", options->frames, "plan at most this many frames of each sensor")
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_option("--sensor", options->sensor, "only this sensor");
+  command.add_option("--frames", options->frames, "plan at most this many frames of each sensor")
       ->default_val(16)
       ->check(CLI::Range(1, 100000));
-  command->add_flag("--all", options->all,
-                    "each plan, with cost, error and reason of every effect");
-  command->add_flag("--json", options->json, "print one JSON object");
-  command->callback([options] { explain(*options); });
+  command.add_flag("--all", options->all, "each plan, with cost, error and reason of every effect");
+  command.add_flag("--json", options->json, "print one JSON object");
+  command.callback([options] { explain(*options); });
+}
+
+}  // namespace
+
+Command explain_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary =
+              "Shows at which level each effect runs in a sensor's frames, why, and what it costs",
+          .add_options = add_explain_options};
 }
 
 }  // namespace dmise
