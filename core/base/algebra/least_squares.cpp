@@ -1,4 +1,4 @@
-#include "core/base/numeric/least_squares.h"
+#include "core/base/algebra/least_squares.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/astrometry/normal_equations.h"
+#include "core/base/algebra/positive_matrix.h"
 
 #include <algorithm>
 #include <cmath>
