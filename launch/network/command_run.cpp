@@ -28,7 +28,7 @@
 #include "launch/run/progress.h"
 #include "launch/run/replayed_nodes.h"
 #include "launch/run/run_outcome.h"
-#include "launch/run/scenario_outlook.h"
+#include "launch/run/scenario_forecast.h"
 #include "nodes/runtime/process/event.h"
 #include "sensors/frame/recorded_plans.h"
 #include "sensors/frame/sensor_evaluator.h"
@@ -53,7 +53,7 @@ class EmbeddedRun {
   EmbeddedRun(const Scenario& scenario, ScenarioInputs scene, const RunDirectory& directory,
               int thread_count, Tick first_tick, ReplayedNodes replayed)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
-    print_outlook(scenario, scene, make_clock(scenario));
+    print_forecast(scenario, scene, make_clock(scenario));
     NodeParts parts{scenario,           scene,    directory.digest(),
                     directory.path(),   threads_, [this](const std::string& line) { note(line); },
                     std::move(replayed)};

@@ -18,9 +18,9 @@
 #include "core/plan/plan_json.h"
 #include "core/time/iso8601.h"
 #include "launch/command/command.h"
-#include "launch/run/scenario_outlook.h"
-#include "sensors/outlook/outlook_text.h"
-#include "sensors/outlook/plan_outlook.h"
+#include "launch/run/scenario_forecast.h"
+#include "sensors/forecast/forecast_text.h"
+#include "sensors/forecast/plan_forecast.h"
 
 namespace dmise {
 namespace {
@@ -135,13 +135,13 @@ void explain(const ExplainOptions& options) {
   json.begin_object().field("scenario", printable(scenario.path)).key("sensors").begin_array();
   for (const auto& sensor : scenario.sensors) {
     if (!options.sensor.empty() && sensor.name != options.sensor) continue;
-    const auto spans = plan_outlook(scenario, sensor, scene.population, clock, scene.stars.get(),
-                                    threads, options.frames);
-    const SensorOutlook outlook = sensor_outlook(scenario, sensor, scene.population, clock,
-                                                 scene.stars, threads, {.max_frames = 0});
+    const auto spans = plan_forecast(scenario, sensor, scene.population, clock, scene.stars.get(),
+                                     threads, options.frames);
+    const SensorForecast forecast = sensor_forecast(scenario, sensor, scene.population, clock,
+                                                    scene.stars, threads, {.max_frames = 0});
     if (options.json) {
       json.begin_object().field("sensor", sensor.name).field("accuracy", sensor.accuracy.name);
-      if (outlook.mid_run) json.field("limiting_magnitude", outlook.mid_run->point_limit_v_mag);
+      if (forecast.mid_run) json.field("limiting_magnitude", forecast.mid_run->point_limit_v_mag);
       json.key("spans").begin_array();
       for (const auto& span : spans) {
         json.begin_object().field("first_frame", span.first_frame);
@@ -158,7 +158,7 @@ void explain(const ExplainOptions& options) {
     explained.push_back({sensor.name,
                          sensor.accuracy.is_planned() ? "accuracy: " + sensor.accuracy.name
                                                       : "not planned (accuracy: off)",
-                         limiting_magnitude_text(outlook), spans});
+                         limiting_magnitude_text(forecast), spans});
     print_plans(explained.back(), factors);
     if (options.all)
       for (const auto& span : spans) print_span(span, clock, factors);

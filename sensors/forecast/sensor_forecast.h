@@ -5,8 +5,8 @@
 
 #include "core/propagation/object_states.h"
 #include "core/time/clock.h"
-#include "sensors/outlook/camera_figures.h"
-#include "sensors/outlook/frame_outlook.h"
+#include "sensors/forecast/camera_figures.h"
+#include "sensors/forecast/frame_forecast.h"
 #include "sensors/scene/exclusion.h"
 
 namespace dmise {
@@ -21,7 +21,7 @@ struct ExcludedFrames {
 };
 
 /// Prediction of a sensor's frames from a few of them, without rendering.
-struct SensorOutlook {
+struct SensorForecast {
   std::string sensor;
   CameraFigures camera;
   bool on_ground = true;
@@ -35,12 +35,12 @@ struct SensorOutlook {
   std::uint32_t excluded_frames = 0;       // in which at least one body is too near
   std::vector<ExcludedFrames> excluded;    // of each body that the camera has a limit for
   bool objects_counted = true;             // false: too many objects
-  std::vector<FrameOutlook> frames;        // examined: the first, the last, and evenly spaced ones
-  std::optional<FrameOutlook> mid_run;     // of the frame in the middle of the run, for its limits
+  std::vector<FrameForecast> frames;       // examined: the first, the last, and evenly spaced ones
+  std::optional<FrameForecast> mid_run;    // of the frame in the middle of the run, for its limits
   std::vector<std::string> warnings;       // one line each, with the sensor's place in the scenario
 };
 
-struct OutlookOptions {
+struct ForecastOptions {
   std::uint32_t max_frames = 16;  // examined; 0: only the one in mid run
   /// Number of object states computed for counting: beyond, fewer frames are examined, and if two
   /// are too many, objects are not counted.
@@ -52,10 +52,10 @@ struct OutlookOptions {
 /// Examines frames of `sensor`, one of the scenario's. `stars` may be null. Throws `ConfigError`
 /// with the key's position if its platform or target has no state at the first frame, as the run
 /// would.
-SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& sensor,
-                             const ObjectPopulation& population, const Clock& clock,
-                             std::shared_ptr<const StarMap> stars, Threads& threads,
-                             const OutlookOptions& options = {});
+SensorForecast sensor_forecast(const Scenario& scenario, const SensorConfig& sensor,
+                               const ObjectPopulation& population, const Clock& clock,
+                               std::shared_ptr<const StarMap> stars, Threads& threads,
+                               const ForecastOptions& options = {});
 
 /// Warnings of catalogues whose elements are weeks from the start of the run.
 std::vector<std::string> catalogue_warnings(const Scenario& scenario,

@@ -1,4 +1,4 @@
-#include "sensors/outlook/camera_figures.h"
+#include "sensors/forecast/camera_figures.h"
 
 #include "core/optics/projection.h"
 

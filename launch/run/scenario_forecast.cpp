@@ -1,4 +1,4 @@
-#include "launch/run/scenario_outlook.h"
+#include "launch/run/scenario_forecast.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,7 +12,7 @@
 #include "core/sky/stars/star_map.h"
 #include "core/sky/variables/variable_stars.h"
 #include "launch/command/notes.h"
-#include "sensors/outlook/outlook_text.h"
+#include "sensors/forecast/forecast_text.h"
 
 namespace dmise {
 namespace {
@@ -67,41 +67,41 @@ std::string default_spheres_text(const Scenario& scenario, const ObjectRoster& r
 }
 
 /// The faintest magnitude to which a sensor draws synthetic stars; -infinity: none does.
-double synthetic_to_v_mag(const ScenarioOutlook& outlook) {
+double synthetic_to_v_mag(const ScenarioForecast& forecast) {
   double to_v_mag = -std::numeric_limits<double>::infinity();
-  for (const SensorOutlook& sensor : outlook.sensors)
-    for (const FrameOutlook& frame : sensor.frames)
+  for (const SensorForecast& sensor : forecast.sensors)
+    for (const FrameForecast& frame : sensor.frames)
       if (frame.synthetic && frame.synthetic->stars >= 0.5)
         to_v_mag = std::max(to_v_mag, frame.synthetic->to_v_mag);
   return to_v_mag;
 }
 
 /// The faintest limiting magnitude of the sensors; -infinity: none is known.
-double limit_v_mag(const ScenarioOutlook& outlook) {
+double limit_v_mag(const ScenarioForecast& forecast) {
   double limit = -std::numeric_limits<double>::infinity();
-  for (const SensorOutlook& sensor : outlook.sensors)
+  for (const SensorForecast& sensor : forecast.sensors)
     if (sensor.mid_run) limit = std::max(limit, sensor.mid_run->point_limit_v_mag.value_or(limit));
   return limit;
 }
 
 /// Where the scenario's catalogue of stars ends, if its sensors see farther; else empty.
 std::string end_of_catalogue_text(const Scenario& scenario, const StarMap& stars,
-                                  const ScenarioOutlook& outlook) {
+                                  const ScenarioForecast& forecast) {
   const double end_v_mag =
       std::min(scenario.faintest_star_mag, stars.summary.faintest_filled_v_mag);
   const std::string end = formatted("stars of %s end at V = %g",
                                     printable(scenario.star_catalogue_named).c_str(), end_v_mag);
-  if (const double to = synthetic_to_v_mag(outlook); to > end_v_mag) {
+  if (const double to = synthetic_to_v_mag(forecast); to > end_v_mag) {
     const bool can_be_real = scenario.star_catalogue_named == default_star_catalogue;
     return end + formatted("; fainter ones are synthetic, by star counts, to V = %g at most", to) +
            (can_be_real ? "; `catalogue: tycho2` has real ones to V = 11 (`dmise catalogue fetch "
                           "tycho2` makes it)"
                         : "");
   }
-  if (!scenario.synthetic_stars_to_v_mag && limit_v_mag(outlook) > end_v_mag + 1.0)
+  if (!scenario.synthetic_stars_to_v_mag && limit_v_mag(forecast) > end_v_mag + 1.0)
     return end +
            formatted(", and the sensors see to V = %.1f: `synthetic_to: limit` continues them",
-                     limit_v_mag(outlook));
+                     limit_v_mag(forecast));
   return "";
 }
 
@@ -135,48 +135,49 @@ std::string problems_text(const VariableStars& variables) {
 
 }  // namespace
 
-ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs& scene,
-                                 const Clock& clock, const OutlookOptions& options) {
+ScenarioForecast scenario_forecast(const Scenario& scenario, const ScenarioInputs& scene,
+                                   const Clock& clock, const ForecastOptions& options) {
   const ObjectPopulation& population = scene.population;
-  ScenarioOutlook outlook{.objects = population.roster.objects.size()};
-  for (const OwnNode& node : scenario.own_nodes) outlook.notes.push_back(node_text(scenario, node));
-  append(outlook.notes, population.notes);
+  ScenarioForecast forecast{.objects = population.roster.objects.size()};
+  for (const OwnNode& node : scenario.own_nodes)
+    forecast.notes.push_back(node_text(scenario, node));
+  append(forecast.notes, population.notes);
   if (const auto text = default_spheres_text(scenario, population.roster); !text.empty())
-    outlook.notes.push_back(text);
-  append(outlook.notes, clock.warnings(scenario.duration));
-  append(outlook.warnings, scenario.warnings);
-  append(outlook.warnings, catalogue_warnings(scenario, population));
+    forecast.notes.push_back(text);
+  append(forecast.notes, clock.warnings(scenario.duration));
+  append(forecast.warnings, scenario.warnings);
+  append(forecast.warnings, catalogue_warnings(scenario, population));
   Threads threads(1);
   for (const auto& sensor : scenario.sensors) {
     if (!sensor.is_camera()) continue;
-    outlook.sensors.push_back(
-        sensor_outlook(scenario, sensor, population, clock, scene.stars, threads, options));
-    append(outlook.warnings, outlook.sensors.back().warnings);
+    forecast.sensors.push_back(
+        sensor_forecast(scenario, sensor, population, clock, scene.stars, threads, options));
+    append(forecast.warnings, forecast.sensors.back().warnings);
   }
   if (!scene.stars && std::ranges::any_of(scenario.sensors, draws_stars))
-    outlook.notes.push_back(
+    forecast.notes.push_back(
         "no stars are drawn: `stars: {catalogue: kstars}` draws those to V = 9, and `synthetic_to: "
         "limit` those beyond");
   if (scene.stars)
-    if (const auto text = end_of_catalogue_text(scenario, *scene.stars, outlook); !text.empty())
-      outlook.notes.push_back(text);
+    if (const auto text = end_of_catalogue_text(scenario, *scene.stars, forecast); !text.empty())
+      forecast.notes.push_back(text);
   if (scene.stars && scene.stars->variables) {
     const VariableStars& variables = *scene.stars->variables;
-    outlook.notes.push_back(variables_text(scenario, variables));
-    if (variables.problems() > 0) outlook.warnings.push_back(problems_text(variables));
+    forecast.notes.push_back(variables_text(scenario, variables));
+    if (variables.problems() > 0) forecast.warnings.push_back(problems_text(variables));
   }
-  return outlook;
+  return forecast;
 }
 
-void print_outlook(const Scenario& scenario, const ScenarioInputs& scene, const Clock& clock) {
+void print_forecast(const Scenario& scenario, const ScenarioInputs& scene, const Clock& clock) {
   constexpr std::size_t max_sensors = 16;
   Scenario first = scenario;
   first.sensors.resize(std::min(scenario.sensors.size(), max_sensors));
-  const auto outlook =
-      scenario_outlook(first, scene, clock, {.max_frames = 3, .max_states = 500'000});
-  for (const auto& note : outlook.notes) print_note(note);
-  for (const auto& sensor : outlook.sensors) print_note(sensor.sensor + ": " + short_text(sensor));
-  for (const auto& warning : outlook.warnings) print_warning(warning);
+  const auto forecast =
+      scenario_forecast(first, scene, clock, {.max_frames = 3, .max_states = 500'000});
+  for (const auto& note : forecast.notes) print_note(note);
+  for (const auto& sensor : forecast.sensors) print_note(sensor.sensor + ": " + short_text(sensor));
+  for (const auto& warning : forecast.warnings) print_warning(warning);
   if (const std::size_t others = scenario.sensors.size() - first.sensors.size())
     print_note("dmise check reports the same for " + std::to_string(others) + " more sensors");
 }

@@ -1,4 +1,4 @@
-#include "sensors/outlook/sensor_outlook.h"
+#include "sensors/forecast/sensor_forecast.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/effects/frame_effects.h"
+#include "sensors/forecast/forecast_text.h"
 #include "sensors/objects/objects_in_field.h"
 #include "sensors/objects/world_source.h"
-#include "sensors/outlook/outlook_text.h"
 #include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
@@ -52,7 +52,7 @@ std::string node_of(const ObjectPopulation& objects) {
 /// Examines all frames, or evenly spaced ones, for bodies that are too near to the axis.
 void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
                         const ObjectPopulation& needed, const StateSource& source,
-                        std::uint32_t frames, const WorldSource& worlds, SensorOutlook& out) {
+                        std::uint32_t frames, const WorldSource& worlds, SensorForecast& out) {
   const Exclusion& limits = sensor.camera.exclusion;
   for (const ExcludingBody& body : excluding_bodies)
     if (const auto& limit_deg = limits.*body.limit_deg)
@@ -81,14 +81,14 @@ void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
 
 }  // namespace
 
-SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& sensor,
-                             const ObjectPopulation& population, const Clock& clock,
-                             std::shared_ptr<const StarMap> stars, Threads& threads,
-                             const OutlookOptions& options) {
-  SensorOutlook out{.sensor = sensor.name,
-                    .camera = camera_figures(sensor.camera.optics),
-                    .on_ground = std::holds_alternative<SiteConfig>(sensor.place),
-                    .frames_in_run = frames_within(sensor, scenario.duration)};
+SensorForecast sensor_forecast(const Scenario& scenario, const SensorConfig& sensor,
+                               const ObjectPopulation& population, const Clock& clock,
+                               std::shared_ptr<const StarMap> stars, Threads& threads,
+                               const ForecastOptions& options) {
+  SensorForecast out{.sensor = sensor.name,
+                     .camera = camera_figures(sensor.camera.optics),
+                     .on_ground = std::holds_alternative<SiteConfig>(sensor.place),
+                     .frames_in_run = frames_within(sensor, scenario.duration)};
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) out.target = target->object;
   out.cued = std::holds_alternative<PointCued>(sensor.pointing);
   out.min_limb_angle_rad = options.min_limb_angle_rad;
@@ -123,20 +123,20 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
                             models_of(scenario.objects));
   const ExposurePlanner planner(sensor, stars.get(), scenario.faintest_star_mag, &shapes);
-  const OutlookScene scene{.stars = std::move(stars),
-                           .faintest_star_mag = scenario.faintest_star_mag,
-                           .shapes = &shapes,
-                           .planner = &planner,
-                           .psf_sigma_px = blur_sigma_px(sensor),
-                           .count_objects = out.objects_counted};
-  const auto look_at = [&](std::uint32_t frame, const OutlookScene& with) {
+  const ForecastScene scene{.stars = std::move(stars),
+                            .faintest_star_mag = scenario.faintest_star_mag,
+                            .shapes = &shapes,
+                            .planner = &planner,
+                            .psf_sigma_px = blur_sigma_px(sensor),
+                            .count_objects = out.objects_counted};
+  const auto look_at = [&](std::uint32_t frame, const ForecastScene& with) {
     const FrameTimes exposure = frame_times(sensor, frame);
     const World world = worlds.around(exposure, seen, source);
-    return frame_outlook(View(sensor, exposure, world, scenario.seed), with);
+    return frame_forecast(View(sensor, exposure, world, scenario.seed), with);
   };
   for (const std::uint32_t frame : evenly(frames, looks))
     out.frames.push_back(look_at(frame, scene));
-  OutlookScene without_objects = scene;
+  ForecastScene without_objects = scene;
   without_objects.count_objects = false;
   if (frames > 0) out.mid_run = look_at((frames + 1) / 2, without_objects);
   out.warnings = warnings_of(out, sensor.where.empty() ? sensor.name : sensor.where);

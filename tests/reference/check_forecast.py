@@ -1,6 +1,6 @@
 """What `dmise check --json` says of sensors, against closed forms, astropy and the frames of runs.
 
-    check_outlook.py DMISE
+    check_forecast.py DMISE
 
 Fields of view by the projections' formulae; Sun's and Moon's elevation by astropy (its own ephemeris, no
 air); elevation of a target by the truth of its frames; stars and objects by those drawn; limiting
@@ -51,7 +51,7 @@ def write(directory, text, name="scenario.yaml"):
     return path
 
 
-def outlook(binary, path):
+def forecast(binary, path):
     done = subprocess.run([binary, "check", "--json", path], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -77,7 +77,7 @@ def fields_of_view(binary, directory):
     for k, (projection, field, columns, rows) in enumerate(cases):
         text += (f"  - {{name: s{k}, site: atlanta, pointing: zenith, exposure_s: 1, cadence_s: 5, sky: 21.9,\n"
                  f"     camera: {camera(columns, rows, projection, field, 0.001)}}}\n")
-    said = outlook(binary, write(directory, text))
+    said = forecast(binary, write(directory, text))
     worst = 0.0
     for (projection, field, columns, rows), sensor in zip(cases, said["sensors"]):
         focal_px = columns / 2 / HEIGHT[projection](math.radians(field / 2))
@@ -104,7 +104,7 @@ def elevations(binary, directory):
         for k, (latitude, longitude, height) in enumerate(sites):
             text += (f"  - {{name: s{k}, site: {{latitude_deg: {latitude!r}, longitude_deg: {longitude!r}, height_m: {height!r}}}, "
                      f"pointing: zenith, exposure_s: 1, cadence_s: 3000, sky: 21.9, camera: {camera()}}}\n")
-        for (latitude, longitude, height), sensor in zip(sites, outlook(binary, write(directory, text))["sensors"]):
+        for (latitude, longitude, height), sensor in zip(sites, forecast(binary, write(directory, text))["sensors"]):
             place = EarthLocation.from_geodetic(longitude * u.deg, latitude * u.deg, height * u.m)
             times = Time([f["middle_utc"].rstrip("Z") for f in sensor["frames"]], scale="utc")
             frame = AltAz(obstime=times, location=place, pressure=0 * u.hPa)
@@ -138,7 +138,7 @@ def counts(binary, directory):
                  f"camera: {camera(field_deg=field)}}}\n")
     text += "output: {png: false, fits: false}\n"
     path = write(directory, text)
-    said = outlook(binary, path)
+    said = forecast(binary, path)
     frames, truth, _ = run(binary, path, directory / "counts")
     drawn = {(f["sensor"], f["frame"]): f for f in frames}
     seen = {"stars": 0, "objects": 0}
@@ -196,7 +196,7 @@ def completeness(binary, directory, make, name, key, exposure_s, sky, frames, se
     rng = random.Random(3)
     # One bright source tells the limit, and what magnitude a radius of a metre makes.
     path = write(directory, scenario_of([make(rng, 0, 5.0)], exposure_s, sky, 1, 1))
-    told = outlook(binary, path)["sensors"][0]["frames"][0]
+    told = forecast(binary, path)["sensors"][0]["frames"][0]
     _, truth, _ = run(binary, path, directory / "limit")
     unit_mag = truth[0]["true_magnitude"] + 5 * math.log10(5.0)
     limit = told[key]
@@ -280,10 +280,10 @@ def warned(binary, directory):
              ("pointing: zenith", "pointing: {azimuth_deg: 200, elevation_deg: 40}", "no lit object is in the field")]
     for text, slip, warning in cases:
         assert text in good, text
-        said = outlook(binary, write(directory, good.replace(text, slip, 1)))["warnings"]
+        said = forecast(binary, write(directory, good.replace(text, slip, 1)))["warnings"]
         check(any(warning in line and "scenario.yaml:" in line for line in said), f"{slip}: {said}")
     old = good.replace("objects: [{", "objects: [{catalogue: demo}, {").replace("2018-01-21", "2024-01-21")
-    check(any("from the start of the run" in w for w in outlook(binary, write(directory, old))["warnings"]),
+    check(any("from the start of the run" in w for w in forecast(binary, write(directory, old))["warnings"]),
           "elements years from the run are warned of")
 
 

@@ -1,4 +1,4 @@
-#include "sensors/outlook/thermal_limit.h"
+#include "sensors/forecast/thermal_limit.h"
 
 #include <cmath>
 

@@ -20,9 +20,9 @@ struct PlanSpan {
 
 /// Plans the frames of a sensor as its run does, at most `max_frames` of them, evenly over the
 /// run. Empty for a sensor that is not planned. `stars` may be null.
-std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig& sensor,
-                                   const ObjectPopulation& population, const Clock& clock,
-                                   const StarMap* stars, Threads& threads,
-                                   std::uint32_t max_frames);
+std::vector<PlanSpan> plan_forecast(const Scenario& scenario, const SensorConfig& sensor,
+                                    const ObjectPopulation& population, const Clock& clock,
+                                    const StarMap* stars, Threads& threads,
+                                    std::uint32_t max_frames);
 
 }  // namespace dmise

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/sky/stars/star_cache.h"
+#include "sensors/forecast/detection_limit.h"
+#include "sensors/forecast/thermal_limit.h"
 #include "sensors/objects/object_shapes.h"
-#include "sensors/outlook/detection_limit.h"
-#include "sensors/outlook/thermal_limit.h"
 #include "sensors/scene/view.h"
 
 namespace dmise {
@@ -16,7 +16,7 @@ namespace dmise {
 class ExposurePlanner;
 
 /// A planet as a frame shows it; V above the air.
-struct PlanetOutlook {
+struct PlanetForecast {
   std::string_view name;
   double v_mag = 0.0, diameter_rad = 0.0;
   bool is_disc = false;  // drawn as one, not as a point
@@ -24,7 +24,7 @@ struct PlanetOutlook {
 
 /// Prediction of one frame, at mid exposure, without rendering it. Elevations are of centres,
 /// without refraction, above the horizon of the ellipsoid; on the ground only.
-struct FrameOutlook {
+struct FrameForecast {
   std::uint32_t frame = 0;
   SimTime middle;
   std::optional<double> boresight_elevation_rad, sun_elevation_rad, moon_elevation_rad,
@@ -33,10 +33,10 @@ struct FrameOutlook {
   bool boresight_hidden = false;         // by the Earth
   bool target_hidden = false;
   bool sun_in_field = false;
-  std::vector<PlanetOutlook> planets;  // in the field or next to it
-  bool shutter_closed = false;         // nothing is in the field
-  PixelBackground background;          // at the frame's centre
-  double full_e = 0.0;                 // saturation level
+  std::vector<PlanetForecast> planets;  // in the field or next to it
+  bool shutter_closed = false;          // nothing is in the field
+  PixelBackground background;           // at the frame's centre
+  double full_e = 0.0;                  // saturation level
   std::optional<ThermalLimit> thermal;
   double extinction_mag = 0.0;  // along the boresight
   double streak_deg_per_s = 0.0, streak_px = 0.0;
@@ -63,7 +63,7 @@ inline constexpr double near_range_m = 500e3;
 
 /// Further inputs besides the view. `stars`, `shapes` and `planner` may be null. Objects are
 /// counted if `count_objects`, because the world may hold only some of them.
-struct OutlookScene {
+struct ForecastScene {
   std::shared_ptr<const StarMap> stars;
   double faintest_star_mag = 0.0;
   const ObjectShapes* shapes = nullptr;
@@ -72,7 +72,7 @@ struct OutlookScene {
   bool count_objects = true;
 };
 
-FrameOutlook frame_outlook(const View& view, const OutlookScene& scene);
+FrameForecast frame_forecast(const View& view, const ForecastScene& scene);
 
 /// Objects whose sunlit path is in the frame or within `margin_px` of it.
 std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, double margin_px);

@@ -1,4 +1,4 @@
-#include "sensors/outlook/outlook_text.h"
+#include "sensors/forecast/forecast_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-using Frames = std::vector<FrameOutlook>;
+using Frames = std::vector<FrameForecast>;
 
 /// Minimum and maximum of a quantity over frames.
 struct Range {
@@ -28,7 +28,7 @@ struct Range {
   }
 };
 template <class T>
-Range range_of(const Frames& frames, std::optional<T> FrameOutlook::*figure, double unit = 1.0) {
+Range range_of(const Frames& frames, std::optional<T> FrameForecast::*figure, double unit = 1.0) {
   Range range;
   for (const auto& frame : frames) {
     if (!(frame.*figure)) continue;
@@ -43,7 +43,7 @@ std::string text_of(const Range& range, const char* format) {
 }
 
 /// From the first examined frame to the last, with extremes in between.
-std::string course_of(const Frames& frames, std::optional<double> FrameOutlook::*figure) {
+std::string course_of(const Frames& frames, std::optional<double> FrameForecast::*figure) {
   const Range range = range_of(frames, figure, deg);
   const double first = (frames.front().*figure).value_or(0.0) / deg;
   const double last = (frames.back().*figure).value_or(0.0) / deg;
@@ -56,19 +56,19 @@ std::string course_of(const Frames& frames, std::optional<double> FrameOutlook::
   return text + " deg";
 }
 
-std::size_t count_if(const Frames& frames, const std::function<bool(const FrameOutlook&)>& is) {
+std::size_t count_if(const Frames& frames, const std::function<bool(const FrameForecast&)>& is) {
   return std::size_t(std::count_if(frames.begin(), frames.end(), is));
 }
 
-std::string looked_at(const SensorOutlook& o) {
+std::string looked_at(const SensorForecast& o) {
   return std::to_string(o.frames.size()) +
          (o.frames.size() == o.frames_in_run ? "" : " of " + std::to_string(o.frames_in_run)) +
          (o.frames_in_run == 1 ? " frame" : " frames");
 }
 
-const FrameOutlook& middle_of(const SensorOutlook& o) { return o.frames[o.frames.size() / 2]; }
+const FrameForecast& middle_of(const SensorForecast& o) { return o.frames[o.frames.size() / 2]; }
 
-std::string field_text(const SensorOutlook& o) {
+std::string field_text(const SensorForecast& o) {
   const auto& c = o.camera;
   const double scale_arcsec = c.pixel_rad / arcsec;
   return formatted(
@@ -76,11 +76,11 @@ std::string field_text(const SensorOutlook& o) {
       c.width_rad / deg, c.height_rad / deg, c.diagonal_rad / deg, scale_arcsec, c.f_number);
 }
 
-std::string limit_text(const SensorOutlook& o) {
+std::string limit_text(const SensorForecast& o) {
   std::string text = limiting_magnitude_text(o);
   if (text.empty()) return "";
   text += " (" + limiting_magnitude_meaning() + ")";
-  const FrameOutlook& f = *o.mid_run;
+  const FrameForecast& f = *o.mid_run;
   if (f.found_point_v_mag)
     text += formatted("; half of the points of V = %.1f are found beside star trails of %.0f px",
                       *f.found_point_v_mag, f.star_px);
@@ -92,7 +92,7 @@ std::string limit_text(const SensorOutlook& o) {
 }
 
 /// What a low orbit is out of focus; empty: as sharp as stars.
-std::string near_text(const SensorOutlook& o) {
+std::string near_text(const SensorForecast& o) {
   if (!o.mid_run || !o.mid_run->near_limit_v_mag) return "";
   return formatted(
       "out of focus at %g km: a disc of %.3g arcsec (%.3g px), for which the limiting "
@@ -108,7 +108,7 @@ std::string thermal_text(const ThermalLimit& t) {
       t.background_e_per_s, t.fills_in_s, t.nefd_w_per_m2 * 1e-4, t.nefd_jy, t.nefd_ab_mag);
 }
 
-std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
+std::string frames_of(std::uint32_t count, const SensorForecast& o) {
   std::string text = std::to_string(count) + " of " + std::to_string(o.looked_for_exclusion);
   if (o.looked_for_exclusion < o.frames_in_run)
     text += " (looked at, of " + std::to_string(o.frames_in_run) + ")";
@@ -116,7 +116,7 @@ std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
 }
 
 /// Where a body is beside a camera's limit, in one line.
-std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
+std::string exclusion_text(const ExcludedFrames& of, const SensorForecast& o) {
   std::string text = std::string("exclusion: ") + of.body->name;
   if (!of.min_rad)
     return text + (o.on_ground ? " is below the horizon in " : " is behind the Earth in ") +
@@ -135,7 +135,7 @@ std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
 
 }  // namespace
 
-std::string limiting_magnitude_text(const SensorOutlook& o) {
+std::string limiting_magnitude_text(const SensorForecast& o) {
   if (!o.mid_run || !o.mid_run->point_limit_v_mag) return "";
   return formatted("limiting magnitude V = %.2f", *o.mid_run->point_limit_v_mag);
 }
@@ -145,7 +145,7 @@ std::string limiting_magnitude_meaning() {
                    detection_limits::seed_snr);
 }
 
-std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& where) {
+std::vector<std::string> warnings_of(const SensorForecast& o, const std::string& where) {
   std::vector<std::string> warnings;
   const std::size_t looked = o.frames.size();
   if (looked == 0) return warnings;
@@ -164,11 +164,11 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   else if (const auto m = count_if(o.frames, [](auto& f) { return f.boresight_hidden; }))
     warn(std::string("the camera points ") +
          (o.on_ground ? "below the horizon " : "at the Earth ") + of_frames(m));
-  const auto low = [&](const FrameOutlook& f) {
+  const auto low = [&](const FrameForecast& f) {
     return f.limb_angle_rad && *f.limb_angle_rad < o.min_limb_angle_rad;
   };
   if (const auto n = count_if(o.frames, low)) {
-    const Range limb = range_of(o.frames, &FrameOutlook::limb_angle_rad, deg);
+    const Range limb = range_of(o.frames, &FrameForecast::limb_angle_rad, deg);
     warn(formatted("the camera points to within %.1f deg of the Earth's limb, nearer than "
                    "--limb-deg %g, ",
                    limb.least, o.min_limb_angle_rad / deg) +
@@ -177,15 +177,15 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   if (const auto n = count_if(o.frames, [](auto& f) { return f.sun_in_field; }))
     warn("the Sun is in the field " + of_frames(n));
   // Civil twilight ends at -6 deg: above it no star is visible by eye.
-  const auto day = [](const FrameOutlook& f) {
+  const auto day = [](const FrameForecast& f) {
     return f.sun_elevation_rad && *f.sun_elevation_rad > -6.0 * deg;
   };
   if (const auto n = count_if(o.frames, day)) {
-    const Range sun = range_of(o.frames, &FrameOutlook::sun_elevation_rad, deg);
+    const Range sun = range_of(o.frames, &FrameForecast::sun_elevation_rad, deg);
     warn(formatted("it is day or civil twilight (the Sun up to %.1f deg) ", sun.most) +
          of_frames(n));
   }
-  const auto full = [](const FrameOutlook& f) { return f.background.electrons >= f.full_e; };
+  const auto full = [](const FrameForecast& f) { return f.background.electrons >= f.full_e; };
   if (const auto n = count_if(o.frames, full)) {
     double max_e = 0.0;
     for (const auto& f : o.frames) max_e = std::max(max_e, f.background.electrons);
@@ -193,7 +193,7 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
                    middle_of(o).full_e) +
          of_frames(n));
   }
-  const Range objects = range_of(o.frames, &FrameOutlook::objects);
+  const Range objects = range_of(o.frames, &FrameForecast::objects);
   if (objects.any && objects.most == 0.0 && !o.cued)
     warn("no lit object is in the field in any of the " + looked_at(o) + " looked at");
   return warnings;
@@ -202,11 +202,11 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
 namespace {
 
 /// "Jupiter, V -2.3, a disc of 41 arcsec; Venus, V -4.0, a point" of the first frame with each.
-std::string planets_text(const std::vector<FrameOutlook>& frames) {
+std::string planets_text(const std::vector<FrameForecast>& frames) {
   std::string text;
   std::set<std::string_view> named;
-  for (const FrameOutlook& frame : frames)
-    for (const PlanetOutlook& p : frame.planets)
+  for (const FrameForecast& frame : frames)
+    for (const PlanetForecast& p : frame.planets)
       if (named.insert(p.name).second)
         text += (text.empty() ? "" : "; ") + std::string(p.name) +
                 formatted(", V %.1f, ", p.v_mag) +
@@ -223,9 +223,9 @@ double to_two_digits(double count) {
 }
 
 /// " of the catalogue and about 9900 synthetic ones, to V = 17" ...
-std::string synthetic_text(const std::vector<FrameOutlook>& frames) {
+std::string synthetic_text(const std::vector<FrameForecast>& frames) {
   Range count, limit;
-  for (const FrameOutlook& frame : frames) {
+  for (const FrameForecast& frame : frames) {
     if (!frame.synthetic) continue;
     count.add(to_two_digits(frame.synthetic->stars));
     limit.add(frame.synthetic->to_v_mag);
@@ -237,22 +237,22 @@ std::string synthetic_text(const std::vector<FrameOutlook>& frames) {
 
 }  // namespace
 
-std::string short_text(const SensorOutlook& o) {
+std::string short_text(const SensorForecast& o) {
   std::string text = field_text(o);
   if (!o.by_node.empty()) text += "; depends on what node " + o.by_node + " moves";
   if (o.frames.empty()) return text;
   if (const std::string limit = limit_text(o); !limit.empty()) text += "; " + limit;
   if (o.on_ground)
-    text += "; Sun " + course_of(o.frames, &FrameOutlook::sun_elevation_rad) + ", Moon " +
-            course_of(o.frames, &FrameOutlook::moon_elevation_rad);
+    text += "; Sun " + course_of(o.frames, &FrameForecast::sun_elevation_rad) + ", Moon " +
+            course_of(o.frames, &FrameForecast::moon_elevation_rad);
   if (o.frames.front().target_elevation_rad)
     text += "; " + printable(o.target) + " at " +
-            course_of(o.frames, &FrameOutlook::target_elevation_rad);
+            course_of(o.frames, &FrameForecast::target_elevation_rad);
   if (o.cued) text += "; cued: figures are for its parked position";
   return text;
 }
 
-std::vector<std::string> lines_of(const SensorOutlook& o) {
+std::vector<std::string> lines_of(const SensorForecast& o) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& text) { lines.push_back(o.sensor + ": " + text); };
   say(field_text(o));
@@ -265,20 +265,20 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   if (o.mid_run && o.mid_run->thermal) say(thermal_text(*o.mid_run->thermal));
   if (o.on_ground) {
     std::string text = "elevation of the boresight " +
-                       course_of(o.frames, &FrameOutlook::boresight_elevation_rad) + ", the Sun " +
-                       course_of(o.frames, &FrameOutlook::sun_elevation_rad) + ", the Moon " +
-                       course_of(o.frames, &FrameOutlook::moon_elevation_rad);
+                       course_of(o.frames, &FrameForecast::boresight_elevation_rad) + ", the Sun " +
+                       course_of(o.frames, &FrameForecast::sun_elevation_rad) + ", the Moon " +
+                       course_of(o.frames, &FrameForecast::moon_elevation_rad);
     if (o.frames.front().target_elevation_rad)
       text += ", " + printable(o.target) + " " +
-              course_of(o.frames, &FrameOutlook::target_elevation_rad);
+              course_of(o.frames, &FrameForecast::target_elevation_rad);
     say(text);
   }
   if (o.frames.front().limb_angle_rad)
-    say("boresight " + course_of(o.frames, &FrameOutlook::limb_angle_rad) +
+    say("boresight " + course_of(o.frames, &FrameForecast::limb_angle_rad) +
         " above the Earth's limb");
   for (const ExcludedFrames& of : o.excluded) say(exclusion_text(of, o));
-  const Range stars = range_of(o.frames, &FrameOutlook::stars);
-  const Range objects = range_of(o.frames, &FrameOutlook::objects);
+  const Range stars = range_of(o.frames, &FrameForecast::stars);
+  const Range objects = range_of(o.frames, &FrameForecast::objects);
   std::string text;
   if (stars.any) text = text_of(stars, "%.0f") + " stars" + synthetic_text(o.frames);
   if (objects.any)
@@ -290,7 +290,7 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   return lines;
 }
 
-void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
+void write_json(JsonWriter& json, const SensorForecast& o, const Clock& clock) {
   json.begin_object().field("name", o.sensor);
   json.field("field_width_deg", o.camera.width_rad / deg);
   json.field("field_height_deg", o.camera.height_rad / deg);
@@ -343,7 +343,7 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     json.field("sun_in_field", f.sun_in_field);
     if (!f.planets.empty()) {
       json.key("planets").begin_array();
-      for (const PlanetOutlook& planet : f.planets)
+      for (const PlanetForecast& planet : f.planets)
         json.begin_object()
             .field("name", std::string(planet.name))
             .field("v_mag", planet.v_mag)

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "sensors/outlook/detection_limit.h"
+#include "sensors/forecast/detection_limit.h"
 
 namespace dmise {
 

@@ -1,4 +1,4 @@
-#include "sensors/outlook/plan_outlook.h"
+#include "sensors/forecast/plan_forecast.h"
 
 #include "core/effects/frame_effects.h"
 #include "sensors/objects/objects_in_field.h"
@@ -7,10 +7,10 @@
 
 namespace dmise {
 
-std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig& sensor,
-                                   const ObjectPopulation& population, const Clock& clock,
-                                   const StarMap* stars, Threads& threads,
-                                   std::uint32_t max_frames) {
+std::vector<PlanSpan> plan_forecast(const Scenario& scenario, const SensorConfig& sensor,
+                                    const ObjectPopulation& population, const Clock& clock,
+                                    const StarMap* stars, Threads& threads,
+                                    std::uint32_t max_frames) {
   std::vector<PlanSpan> spans;
   if (!sensor.accuracy.is_planned()) return spans;
   const bool wants_objects = sensor.effects.has(SpaceObjects::facts);

@@ -1,4 +1,4 @@
-#include "sensors/outlook/detection_limit.h"
+#include "sensors/forecast/detection_limit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sensors/outlook/frame_outlook.h"
+#include "sensors/forecast/frame_forecast.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, d
   return count;
 }
 
-FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
+FrameForecast frame_forecast(const View& view, const ForecastScene& scene) {
   const auto& sensor = view.sensor();
   const auto& optics = sensor.camera.optics;
   const SimTime middle = view.times().middle;
@@ -50,7 +50,7 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   const auto hides = [&](const Vec<Gcrs>& direction) {
     return earth && earth->hides_direction(direction);
   };
-  FrameOutlook out{.frame = view.times().frame, .middle = middle};
+  FrameForecast out{.frame = view.times().frame, .middle = middle};
   if (view.on_ground()) {
     out.boresight_elevation_rad = elevation_over(up, unit(boresight));
     out.sun_elevation_rad = elevation_over(up, unit(to_sun_m));
