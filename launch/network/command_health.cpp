@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr double patience_s = 1.5;  // below 2 s including the program's start
+constexpr double health_within_s = 1.5;  // below 2 s including the program's start
 
 struct HealthOptions {
   std::string name, master, keys;
@@ -21,7 +21,7 @@ void check_health(const HealthOptions& options) try {
   if (options.master.empty())
     throw Error("health: --master (or DMISE_MASTER) must give the time-master's address");
   const RunStatus status =
-      ask_master(options.master, patience_s, Security(options.keys, options.name));
+      ask_master(options.master, health_within_s, Security(options.keys, options.name));
   if (const std::string complaint = health_problem(status, options.name); !complaint.empty())
     throw Error(complaint);
   std::printf("healthy: tick %lld of %lld\n", static_cast<long long>(status.settled),

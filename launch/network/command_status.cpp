@@ -26,7 +26,7 @@ struct StatusOptions {
   bool once = false, watch = false, healthy = false;
 };
 
-constexpr double patience_s = 2.0;
+constexpr double status_within_s = 2.0;
 constexpr auto interval = std::chrono::milliseconds(500);
 
 Security security_of(const StatusOptions& options) { return {options.keys, operator_name}; }
@@ -106,7 +106,7 @@ void watch(const StatusOptions& options, const Security& security, const RunStat
       if (run.status().phase == Phase::ended || run.status().phase == Phase::failed) break;
       if (terminal.ended(interval)) return;
       try {
-        run.take(ask_master(options.master, patience_s, security), seconds_now());
+        run.take(ask_master(options.master, status_within_s, security), seconds_now());
       } catch (const Error& error) {
         run.miss(error.what(), seconds_now());
         if (run.silent_s() > lost_after_s) break;
@@ -119,7 +119,7 @@ void watch(const StatusOptions& options, const Security& security, const RunStat
 
 void show(const StatusOptions& options) {
   const Security security = security_of(options);
-  RunStatus status = ask_master(options.master, patience_s, security);
+  RunStatus status = ask_master(options.master, status_within_s, security);
   if (options.healthy) {
     if (!healthy(status)) throw Error(status.cause.empty() ? "a node is lost" : status.cause);
     return;
