@@ -4,7 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "core/base/algebra/symmetric2.h"
 #include "core/base/units.h"
 #include "core/frames/vec.h"
 #include "core/score/matched_filter.h"
@@ -14,9 +13,10 @@ namespace dmise {
 namespace {
 
 /// d' C^-1 d / 2; empty if the covariance is not positive definite.
-std::optional<double> half_nees(double x, double y, const Symmetric2& c) {
-  if (!(c[0] > 0.0 && determinant(c) > 0.0)) return {};
-  return 0.5 * mahalanobis2(c, x, y);
+std::optional<double> half_nees(double x, double y, const std::array<double, 3>& c) {
+  const double determinant = c[0] * c[2] - c[1] * c[1];
+  if (!(c[0] > 0.0 && determinant > 0.0)) return {};
+  return 0.5 * (x * x * c[2] - 2.0 * x * y * c[1] + y * y * c[0]) / determinant;
 }
 
 void add_direction(MatchErrors& e, const ScoredTruth& t, const Detection& d) {
