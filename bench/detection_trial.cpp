@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/algebra/symmetric2.h"
 #include "core/detection/detect.h"
 
 namespace dmise {
@@ -134,10 +135,9 @@ void add_result(const FrameHeader& header, const PlacedSource& p, double share, 
   if (!d) return;
   ++out.found;
   const double dx = d->x_px - p.x, dy = d->y_px - p.y;
-  const auto [xx, xy, yy] = d->covariance_px2;
   out.squares_px2 += dx * dx + dy * dy;
   out.bound_px2 += bound_px2(header, p) / std::max(share, 0.1);
-  out.nees += (dx * dx * yy - 2 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy) / 2;
+  out.nees += mahalanobis2(d->covariance_px2, dx, dy) / 2;
   out.bias_sigma += (d->signal_e - p.flux_e) / (d->signal_e / d->snr);
 }
 

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/printable.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/version_text.h"
 
@@ -36,7 +36,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
   app.set_version_flag("--version", version_text("dmise"));
   app.require_subcommand(1);
-  add_commands(app);
+  add_commands(app, commands());
   want_decimal_numbers(app);
   constexpr std::size_t longest = 4000;  // length of an error message [bytes]
   try {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <map>
 
+#include "core/base/algebra/least_squares.h"
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/numeric/least_squares.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 #include "core/photometry/diffuse_sphere.h"

@@ -147,7 +147,7 @@ Looks looks_of(const Scenario& scenario, const Clock& clock, const std::vector<P
       near.push_back(k);
     const SensorConfig& sensor = *placed[from].sensor;
     const auto looks =
-        SensorForecast(scene, sensor).of(frame_times(sensor, placed[from].frame), near);
+        ExposureForecaster(scene, sensor).of(frame_times(sensor, placed[from].frame), near);
     for (const ExpectedDetection& look : looks->looks) out[{from, look.object}] = look;
   }
   return out;

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "core/base/algebra/least_squares.h"
 #include "core/base/error.h"
-#include "core/base/numeric/least_squares.h"
 #include "core/base/units.h"
 #include "core/orbit/two_body.h"
 

@@ -18,8 +18,8 @@
 #include "core/image/fits_image.h"
 #include "core/ingest/any_frame.h"
 #include "core/photometry/magnitude.h"
+#include "sensors/forecast/sensor_forecast.h"
 #include "sensors/objects/world_source.h"
-#include "sensors/outlook/sensor_outlook.h"
 #include "sensors/scene/throughput.h"
 
 namespace dmise {
@@ -97,9 +97,9 @@ PredictedFrame predicted(Scenario scenario, double fwhm_px, Threads& threads) {
   sensor.camera.optics.psf_fwhm_px = fwhm_px;
   const Clock clock = make_clock(scenario);
   const ObjectPopulation none;
-  const SensorOutlook outlook =
-      sensor_outlook(scenario, sensor, none, clock, nullptr, threads, {.max_frames = 0});
-  const FrameOutlook& middle = *outlook.mid_run;
+  const SensorForecast forecast =
+      sensor_forecast(scenario, sensor, none, clock, nullptr, threads, {.max_frames = 0});
+  const FrameForecast& middle = *forecast.mid_run;
   const FrameTimes times = frame_times(sensor, middle.frame);
   const WorldSource worlds(scenario, sensor, clock);
   const StateSource source(none, clock, threads);

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/astrometry/normal_equations.h"
+#include "core/base/algebra/positive_matrix.h"
+#include "core/base/algebra/symmetric2.h"
 
 namespace dmise {
 namespace {
@@ -87,16 +88,13 @@ class Equations {
 };
 
 /// Inverse of a match's covariance.
-std::array<double, 3> weight_of(const PlateMatch& m, double min_sigma_px) {
+Symmetric2 weight_of(const PlateMatch& m, double min_sigma_px) {
+  const auto& [xx, xy, yy] = m.covariance_px2;
   const double more = min_sigma_px * min_sigma_px + 1e-12;
-  const double xx = m.covariance_px2[0] + more, xy = m.covariance_px2[1],
-               yy = m.covariance_px2[2] + more, det = xx * yy - xy * xy;
-  return {yy / det, -xy / det, xx / det};
+  return inverse_of(Symmetric2{xx + more, xy, yy + more});
 }
 
-double square(const std::array<double, 3>& w, PixelPosition r) {
-  return w[0] * r.x_px * r.x_px + 2 * w[1] * r.x_px * r.y_px + w[2] * r.y_px * r.y_px;
-}
+double square(const Symmetric2& w, PixelPosition r) { return quadratic_form(w, r.x_px, r.y_px); }
 
 /// Median of squared residuals over that of chi-square with two degrees of freedom.
 double spread2(std::span<const double> all, std::span<const PlateMatch> matches) {

@@ -5,7 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "core/astrometry/normal_equations.h"
+#include "core/base/algebra/positive_matrix.h"
+#include "core/base/algebra/two_unknowns.h"
 #include "core/base/numeric/quantile.h"
 
 namespace dmise {
@@ -52,7 +53,7 @@ Scatter scatter_of(std::span<const PhotometricStar> stars, std::span<const doubl
   if (groups > 1)
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return stars[i].airmass; });
   const double lost = n > free ? std::sqrt(double(n) / double(n - free)) : 1.0;
-  double w = 0.0, wx = 0.0, wxx = 0.0, wv = 0.0, wxv = 0.0;
+  TwoSums sums{};
   for (std::size_t g = 0; g < groups; ++g) {
     std::vector<double> sizes, photons, cubes;
     for (std::size_t at = g * n / groups; at < (g + 1) * n / groups; ++at) {
@@ -64,13 +65,13 @@ Scatter scatter_of(std::span<const PhotometricStar> stars, std::span<const doubl
     const double size = lost * sigma_of_median * median_of(sizes), all = size * size;
     const double v = all - median_of(photons), x = median_of(cubes);
     const double weight = 1.0 / std::max(all * all, 1e-16);
-    w += weight, wx += weight * x, wxx += weight * x * x, wv += weight * v, wxv += weight * x * v;
+    add_row(1.0, x, v, weight, sums);
   }
   constexpr double least = min_scatter_mag * min_scatter_mag;
-  const double det = w * wxx - wx * wx;
+  const auto& [w, wx, wxx, wv, wxv] = sums;
   Scatter s{.even_mag2 = std::max(wv / w, least)};
-  if (groups < 2 || !(det > 1e-9 * w * wxx)) return s;
-  s.scintillation_mag2 = std::max(0.0, (w * wxv - wx * wv) / det);
+  if (groups < 2 || !(determinant(matrix_of(sums)) > 1e-9 * w * wxx)) return s;
+  s.scintillation_mag2 = std::max(0.0, solution_of(sums)[1]);
   s.even_mag2 = (wv - s.scintillation_mag2 * wx) / w;
   if (s.even_mag2 < least) {
     s.even_mag2 = least;

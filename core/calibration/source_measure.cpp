@@ -68,9 +68,9 @@ SourceMoments SourceMeasure::of_component(const Component& c, double sigma_px) c
 
 bool SourceMeasure::improve(SourceMoments& m) const {
   constexpr double longest_trail_px = 200.0;
-  const double det = m.xx * m.yy - m.xy * m.xy;
-  if (!(det > 1e-4) || m.mean() > longest_trail_px * longest_trail_px) return false;
-  const double ixx = m.yy / det, ixy = -m.xy / det, iyy = m.xx / det;
+  const Symmetric2 spread = m.spread();
+  if (!(determinant(spread) > 1e-4) || m.mean() > longest_trail_px * longest_trail_px) return false;
+  const Symmetric2 weights = inverse_of(spread);
   const int wide = int(std::ceil(3.5 * std::sqrt(m.xx))) + 1,
             high = int(std::ceil(3.5 * std::sqrt(m.yy))) + 1;
   const int cx = int(std::lround(m.x)), cy = int(std::lround(m.y));
@@ -78,7 +78,7 @@ bool SourceMeasure::improve(SourceMoments& m) const {
   for (int y = std::max(0, cy - high); y <= std::min(counts_.rows - 1, cy + high); ++y)
     for (int x = std::max(0, cx - wide); x <= std::min(counts_.columns - 1, cx + wide); ++x) {
       const double dx = x - m.x, dy = y - m.y;
-      const double d2 = ixx * dx * dx + 2 * ixy * dx * dy + iyy * dy * dy;
+      const double d2 = quadratic_form(weights, dx, dy);
       if (d2 > 12.25) continue;
       const double light = std::exp(-0.5 * d2) * signal_e(x, y);
       sum += light;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/astrometry/plate_match.h"
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/image.h"
 #include "core/calibration/star_sources.h"
 #include "core/detection/light/trail_fit.h"
@@ -18,13 +19,14 @@ struct SourceMoments {
   double x = 0.0, y = 0.0, flux = 0.0;
   double xx = 0.0, xy = 0.0, yy = 0.0;
 
-  double mean() const { return 0.5 * (xx + yy); }
-  double half() const { return std::hypot(0.5 * (xx - yy), xy); }
+  Symmetric2 spread() const { return {xx, xy, yy}; }
+  double mean() const { return mean_of_axes(spread()); }
+  double half() const { return half_of_axes(spread()); }
   /// Whether it is narrower than its pixels resolve: the moments then say nothing of its width.
   bool collapsed() const { return std::min(xx, yy) <= min_variance_px2; }
   double minor_sigma() const { return std::sqrt(std::max(mean() - half(), 1.0 / 12)); }
   double major_sigma() const { return std::sqrt(std::max(mean() + half(), 1.0 / 12)); }
-  double angle_rad() const { return 0.5 * std::atan2(2 * xy, xx - yy); }
+  double angle_rad() const { return axis_angle_rad(spread()); }
 };
 
 /// Returns the length of the uniform trail that has the image's moments, without the star's width.

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/astrometry/normal_equations.h"
+#include "core/base/algebra/positive_matrix.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/astrometry/normal_equations.h"
+#include "core/base/algebra/positive_matrix.h"
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/error.h"
 #include "core/base/numeric/chi_square.h"
 #include "core/base/numeric/quantile.h"
@@ -67,17 +68,15 @@ bool lens_row(const LensModel& model, const Projection& lens, const std::vector<
   return true;
 }
 
-double weighted(const std::array<double, 3>& w, PixelPosition a, PixelPosition b) {
+double weighted(const Symmetric2& w, PixelPosition a, PixelPosition b) {
   return w[0] * a.x_px * b.x_px + w[1] * (a.x_px * b.y_px + a.y_px * b.x_px) +
          w[2] * a.y_px * b.y_px;
 }
 
-/// Square of a residual over its covariance, and the inverse covariance.
-std::array<double, 3> inverse_of(const std::array<double, 3>& covariance) {
+Symmetric2 weight_of(const PlateMatch& m) {
   constexpr double least = 1e-8;
-  const double xx = covariance[0] + least, xy = covariance[1], yy = covariance[2] + least;
-  const double det = xx * yy - xy * xy;
-  return {yy / det, -xy / det, xx / det};
+  const auto& [xx, xy, yy] = m.covariance_px2;
+  return inverse_of(Symmetric2{xx + least, xy, yy + least});
 }
 
 std::optional<LensState> lens_state(const std::vector<LensFrame>& frames, const LensModel& model,
@@ -101,7 +100,7 @@ std::optional<LensState> lens_state(const std::vector<LensFrame>& frames, const 
       const PlateMatch& m = frames[f].matches[k];
       if (!used[f][k] || !lens_row(model, lens, more, model.attitudes[f] * m.direction, place, by))
         continue;
-      const auto w = inverse_of(m.covariance_px2);
+      const Symmetric2 w = weight_of(m);
       const PixelPosition off = m.pixel - model.middle - place;
       out.chi2 += weighted(w, off, off);
       out.squares_px2 += off.x_px * off.x_px + off.y_px * off.y_px;
@@ -196,7 +195,7 @@ void drop_outliers(const std::vector<LensFrame>& frames, const LensSolution& fit
       double square = HUGE_VAL;
       if (lens_row(fit.model, lens, {}, fit.model.attitudes[f] * m.direction, place, by)) {
         const PixelPosition off = m.pixel - fit.model.middle - place;
-        square = weighted(inverse_of(m.covariance_px2), off, off);
+        square = weighted(weight_of(m), off, off);
         all.push_back(square);
       }
       squares.back().push_back(square);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/astrometry/zero_point.h"
+#include "core/base/algebra/two_unknowns.h"
 #include "core/base/numeric/quantile.h"
 #include "core/camera_calibration/frame_scatter.h"
 
@@ -11,14 +12,6 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t light_parts = 32, min_light_stars = 5, min_coloured_stars = 10;
-using LightSums = StripSums<5>;  // weights; with colour, its square; with values
-
-/// Zero point and colour term.
-std::array<double, 2> line_of(const LightSums& s, bool coloured) {
-  if (!coloured) return {s[3] / s[0], 0.0};
-  const double det = s[0] * s[2] - s[1] * s[1];
-  return {(s[2] * s[3] - s[1] * s[4]) / det, (s[0] * s[4] - s[1] * s[3]) / det};
-}
 
 /// A star beside a line: what it is off, and its deviation as a star of the line's light has it.
 /// One that noise has made bright claims less noise, and would weigh more than one made faint.
@@ -53,9 +46,9 @@ void weigh(std::vector<OffLine>& stars, double scatter2) {
   }
 }
 
-LightSums sums_of(const StarZeroPoint& star, double weight) {
-  const double c = star.bv - ZeroPoint::sunlike_bv;
-  return {weight, weight * c, weight * c * c, weight * star.mag, weight * c * star.mag};
+/// Of the zero point and the colour term.
+TwoSums sums_of(const StarZeroPoint& star, double weight) {
+  return row_of(1.0, star.bv - ZeroPoint::sunlike_bv, star.mag, weight);
 }
 
 /// The median of the stars by weight.
@@ -88,34 +81,34 @@ class LightFit {
       beside_.clear();
       for (const StarZeroPoint& star : stars) beside_.emplace_back(star, line_);
       weigh(beside_, scatter_of(beside_));
-      LightSums all{};
+      TwoSums all{};
       for (std::size_t k = 0; k < stars.size(); ++k) {
-        const LightSums row = sums_of(stars[k], beside_[k].weight);
+        const TwoSums row = sums_of(stars[k], beside_[k].weight);
         for (std::size_t i = 0; i < row.size(); ++i) all[i] += row[i];
       }
-      line_ = line_of(all, coloured_);
+      line_ = solution_of(all, coloured_);
     }
   }
 
   /// Deviations are by the stars' scatter, and by leaving out parts, as a few bright stars may hold
   /// most of the weight; the greater holds.
   MeasuredValue zero_point() const {
-    std::vector<LightSums> parts(light_parts);
+    std::vector<TwoSums> parts(light_parts);
     std::size_t used = 0;
-    LightSums all{};
+    TwoSums all{};
     double chi2 = 0.0;
     for (std::size_t k = 0; k < stars_.size(); ++k) {
       if (!(beside_[k].weight > 0)) continue;
-      const LightSums row = sums_of(stars_[k], beside_[k].weight);
-      LightSums& part = parts[used++ % light_parts];
+      const TwoSums row = sums_of(stars_[k], beside_[k].weight);
+      TwoSums& part = parts[used++ % light_parts];
       for (std::size_t i = 0; i < row.size(); ++i) part[i] += row[i], all[i] += row[i];
       chi2 += beside_[k].weight * std::pow(OffLine(stars_[k], line_).off, 2);
     }
     parts.resize(std::min(used, light_parts));
     MeasuredValue out =
-        jackknifed(parts, [&](const LightSums& s) { return line_of(s, coloured_)[0]; });
+        jackknifed(parts, [&](const TwoSums& s) { return solution_of(s, coloured_)[0]; });
     const double degrees = double(used) - (coloured_ ? 2.0 : 1.0);
-    const double variance = coloured_ ? all[2] / (all[0] * all[2] - all[1] * all[1]) : 1 / all[0];
+    const double variance = coloured_ ? all[2] / determinant(matrix_of(all)) : 1 / all[0];
     out.sigma = std::max(out.sigma, std::sqrt(variance * std::max(1.0, chi2 / degrees)));
     return out;
   }

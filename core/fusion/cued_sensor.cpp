@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -19,11 +20,10 @@ std::uint32_t CuedSensor::first_frame_from(SimTime t) const {
 
 double probability_in_circle(const Eigen::Matrix2d& covariance, double radius) {
   // The eigenvalues are variances along the axes of the ellipse.
-  const double mean = 0.5 * (covariance(0, 0) + covariance(1, 1)),
-               difference = 0.5 * (covariance(0, 0) - covariance(1, 1)),
-               apart = std::hypot(difference, covariance(1, 0));
-  const double shorter = std::sqrt(std::max(0.0, mean - apart));
-  const double longer = std::sqrt(std::max(0.0, mean + apart));
+  const Symmetric2 ellipse{covariance(0, 0), covariance(1, 0), covariance(1, 1)};
+  const double mean = mean_of_axes(ellipse), half_apart = half_of_axes(ellipse);
+  const double shorter = std::sqrt(std::max(0.0, mean - half_apart));
+  const double longer = std::sqrt(std::max(0.0, mean + half_apart));
   if (!(longer > 1e-9 * radius)) return 1.0;
   constexpr int steps = 256;  // Simpson's rule over the angle of the chord: smooth at the edge
   constexpr double root2 = 1.4142135623730951;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -14,10 +15,10 @@ constexpr double limit_width_mag = 0.5;  // standard deviation of the fall at th
 constexpr double min_sigma_rad = 0.2 * arcsec;
 
 /// Raises both axes of an ellipse to the least; leaves what is wider as it is, to the bit.
-void widen(std::array<double, 3>& covariance) {
+void widen(Symmetric2& covariance) {
   auto& [e, c, n] = covariance;
   const double least = min_sigma_rad * min_sigma_rad;
-  const double mean = (e + n) / 2, half = std::hypot((e - n) / 2, c);
+  const double mean = mean_of_axes(covariance), half = half_of_axes(covariance);
   if (mean - half >= least) return;
   const double large = std::max(mean + half, least);
   // least I + (large - least) times the projection on the longer axis.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/algebra/two_unknowns.h"
 #include "core/base/formatted.h"
 #include "core/base/numeric/quantile.h"
 #include "core/detection/pixels/background.h"
@@ -34,26 +35,23 @@ std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Backgro
     }
   if (cells.size() < 50) return std::nullopt;
   // A cell's variance scatters with its square; a cell with stars is an outlier above.
-  double slope = 0.0, offset = 0.0, slope_sigma = 0.0;
+  double slope = 0.0, slope_sigma = 0.0;
   std::vector<char> used(cells.size(), 1);
   for (int pass = 0; pass < 6; ++pass) {
-    double n = 0, l = 0, v = 0, ll = 0, lv = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (!used[i]) continue;
-      const double w = 1 / (cells[i].variance * cells[i].variance);
-      n += w, l += w * cells[i].level, v += w * cells[i].variance;
-      ll += w * cells[i].level * cells[i].level, lv += w * cells[i].level * cells[i].variance;
-    }
-    const double det = n * ll - l * l;
-    if (!(det > 1e-9 * n * ll)) return std::nullopt;
-    slope = (n * lv - l * v) / det;
-    offset = (ll * v - l * lv) / det;
+    TwoSums sums{};
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (const auto& [level, variance] = cells[i]; used[i])
+        add_row(1.0, level, variance, 1 / (variance * variance), sums);
+    const double det = determinant(matrix_of(sums));
+    if (!(det > 1e-9 * sums[0] * sums[2])) return std::nullopt;
+    const auto [offset, slope_now] = solution_of(sums);
+    slope = slope_now;
     std::vector<double> off;
     for (std::size_t i = 0; i < cells.size(); ++i)
       off.push_back(std::abs(cells[i].variance - offset - slope * cells[i].level) /
                     cells[i].variance);
     const double scatter = std::max(sigma_of_median * median_of(off), 1e-6);
-    slope_sigma = scatter * std::sqrt(n / det);
+    slope_sigma = scatter * std::sqrt(sums[0] / det);
     for (std::size_t i = 0; i < cells.size(); ++i) used[i] = off[i] < 3 * scatter;
   }
   if (!(slope > 10 * slope_sigma) || !(slope_sigma > 0)) return std::nullopt;

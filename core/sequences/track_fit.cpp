@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/algebra/small_matrix.h"
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
-#include "core/detection/pixels/small_matrix.h"
 
 namespace dmise {
 namespace {
@@ -20,11 +21,9 @@ constexpr double linear_px = 8.0;          // over which a map between frames is
 constexpr double neglected_orders = 25.0;  // growth of the covariance, over the square of the SNR
 constexpr double min_seen_snr = 0.5;       // that a frame of a track must add to be of use
 
-using Symmetric = std::array<double, 3>;  // xx, xy, yy
-
 /// How a point's SNR falls off around its place, and how noise slopes there.
 struct Response {
-  Symmetric curvature{};  // for a point of SNR 1 [1/px2]
+  Symmetric2 curvature{};  // of a point of SNR 1 [1/px2]
   double slope_variance = 0.0;
 };
 
@@ -38,8 +37,8 @@ struct FrameView {
 };
 
 /// The curvature along a trail is that of a wider point.
-Symmetric curvature_of(const PsfField& psf, PixelPosition at, double sigma_px,
-                       PixelPosition trail) {
+Symmetric2 curvature_of(const PsfField& psf, PixelPosition at, double sigma_px,
+                        PixelPosition trail) {
   const Psf shape = psf.at(at);
   const double length2 = trail.x_px * trail.x_px + trail.y_px * trail.y_px;
   double sum = 0.0, across = 0.0, along = 0.0;
@@ -115,8 +114,8 @@ std::vector<SnrAt> seen_by(const std::vector<MovingLight>& light,
   return seen;
 }
 
-/// Turns a symmetric matrix from the axes of a frame to those of the reference frame.
-Symmetric in_reference(const Symmetric& m, const std::array<double, 4>& a) {
+/// Of a symmetric matrix in a frame, by axes of the reference frame.
+Symmetric2 in_reference(const Symmetric2& m, const std::array<double, 4>& a) {
   const double xx = m[0] * a[0] + m[1] * a[2], xy = m[0] * a[1] + m[1] * a[3],
                yx = m[1] * a[0] + m[2] * a[2], yy = m[1] * a[1] + m[2] * a[3];
   return {a[0] * xx + a[2] * yx, a[0] * xy + a[2] * yy, a[1] * xy + a[3] * yy};
@@ -128,7 +127,7 @@ constexpr std::size_t parameters = 6;  // x, y, x', y', x'', y''
 std::array<double, 3> powers_of(double time_s) { return {1.0, time_s, time_s * time_s / 2}; }
 
 /// Adds weight * m of a place at a time to a matrix of the motion's parameters.
-void add_at(SmallMatrix& to, const Symmetric& m, double time_s, double weight) {
+void add_at(SmallMatrix& to, const Symmetric2& m, double time_s, double weight) {
   const std::array<double, 4> full{m[0], m[1], m[1], m[2]};
   const auto times = powers_of(time_s);
   for (std::size_t i = 0; i < parameters; ++i)
@@ -143,10 +142,10 @@ struct Equations {
 
 /// Variance of the slope of SNR of a frame: of the sky, of the source's own photons (a Gaussian's)
 /// and of the error of the frame's place.
-Symmetric slope_noise(const FrameView& view, double snr, double sigma_px) {
+Symmetric2 slope_noise(const FrameView& view, double snr, double sigma_px) {
   const double own = 4 * std::max(snr, 0.0) / (9 * std::sqrt(pi) * sigma_px * view.noise_e);
   const double sky = view.response.slope_variance * (1 + own);
-  const Symmetric& c = view.response.curvature;
+  const Symmetric2& c = view.response.curvature;
   const double off2 = std::pow(snr * place_error_px, 2);
   return {sky + off2 * (c[0] * c[0] + c[1] * c[1]), off2 * c[1] * (c[0] + c[2]),
           sky + off2 * (c[1] * c[1] + c[2] * c[2])};
@@ -159,7 +158,7 @@ void leave_out_displaced(std::vector<FrameView>& views, const std::vector<SnrAt>
   auto used = std::ranges::count_if(views, [](const FrameView& view) { return view.used; });
   for (std::size_t k = 0; k < views.size() && used > long(min_sequence_frames); ++k) {
     const double slope2 = std::pow(seen[k].slope.x_px, 2) + std::pow(seen[k].slope.y_px, 2);
-    const Symmetric noise = slope_noise(views[k], seen[k].snr, sigma_px);
+    const Symmetric2 noise = slope_noise(views[k], seen[k].snr, sigma_px);
     if (!views[k].used || slope2 < max_displaced_chi2 * (noise[0] + noise[2]) / 2) continue;
     views[k].used = false;
     --used;
@@ -232,9 +231,7 @@ SkyMotion motion_of(const SmallVector& v) { return {{v[0], v[1]}, {v[2], v[3]}, 
 /// The place of a source in one frame alone.
 void measure(const MovingLight& light, const FrameView& view, double sigma_px, TrackPoint& point) {
   if (point.snr < shown_snr) return;
-  const Symmetric& c = view.response.curvature;
-  const double det = c[0] * c[2] - c[1] * c[1];
-  const Symmetric inverse{c[2] / det, -c[1] / det, c[0] / det};
+  const Symmetric2 inverse = inverse_of(view.response.curvature);
   PixelPosition place = point.place;
   for (int step = 0; step < 5; ++step) {
     const SnrAt at = snr_at(light, place);
@@ -246,7 +243,7 @@ void measure(const MovingLight& light, const FrameView& view, double sigma_px, T
   if (std::hypot(place.x_px - point.place.x_px, place.y_px - point.place.y_px) > 1.5 * sigma_px)
     return;
   point.measured = place;
-  const Symmetric noise = slope_noise(view, point.snr, sigma_px);
+  const Symmetric2 noise = slope_noise(view, point.snr, sigma_px);
   // The inverse is symmetric: inverse * noise * inverse, over the square of the SNR.
   point.covariance_px2 = in_reference(noise, {inverse[0], inverse[1], inverse[1], inverse[2]});
   for (double& v : point.covariance_px2) v /= point.snr * point.snr;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/error.h"
 #include "core/tracking/line_of_light.h"
 
@@ -35,14 +36,13 @@ Innovation innovation_of(const PredictedDirection& predicted, const AngleObserva
   Innovation out;
   out.residual_rad = angles_between(predicted.direction, observed.direction);
   out.covariance_rad2 = predicted.covariance_rad2 + covariance_of(observed);
-  const double a = out.covariance_rad2(0, 0), b = out.covariance_rad2(0, 1),
-               c = out.covariance_rad2(1, 1), determinant = a * c - b * b;
-  const double x = out.residual_rad[0], y = out.residual_rad[1];
-  out.d2 = (c * x * x - 2 * b * x * y + a * y * y) / determinant;
-  if (!(determinant > 0) || !std::isfinite(out.d2))
+  const Symmetric2 covariance{out.covariance_rad2(0, 0), out.covariance_rad2(0, 1),
+                              out.covariance_rad2(1, 1)};
+  const double square = determinant(covariance);
+  out.d2 = mahalanobis2(covariance, out.residual_rad[0], out.residual_rad[1]);
+  if (!(square > 0) || !std::isfinite(out.d2))
     out.d2 = std::numeric_limits<double>::max();  // a prediction without an error
-  out.log_likelihood =
-      -0.5 * out.d2 - std::log(2 * pi) - 0.5 * std::log(std::max(determinant, 1e-300));
+  out.log_likelihood = -0.5 * out.d2 - std::log(2 * pi) - 0.5 * std::log(std::max(square, 1e-300));
   return out;
 }
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/algebra/least_squares.h"
 #include "core/base/error.h"
-#include "core/base/numeric/least_squares.h"
 #include "core/base/units.h"
 #include "core/optics/projection.h"
 #include "core/wcs/wcs.h"

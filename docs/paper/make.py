@@ -221,9 +221,9 @@ def figure10(make):
     write_png(make.pictures / "figure10.png", stretched(binned(crop, 2), background - 15, background + 60, 0.5))
     report = json.loads(make.call("discriminate", make.out / "space-imager", "--materials", SCENARIOS / "cells.yaml",
                                   "--is", "STARLINK-1014=silicon", "--is", "unknown=germanium", "--threads", 2, "--json"))
-    outlook = json.loads(make.call("check", SCENARIOS / "space-imager.yaml", "--json"))["sensors"][0]["frames"][0]
+    forecast = json.loads(make.call("check", SCENARIOS / "space-imager.yaml", "--json"))["sensors"][0]["frames"][0]
     names = {n: p for n, p in places.items()}
-    return {"report": report, "limb_angle_deg": outlook.get("limb_angle_deg"), "places_px": names,
+    return {"report": report, "limb_angle_deg": forecast.get("limb_angle_deg"), "places_px": names,
             "range_km": {t["name"]: t["true_range_m"] / 1e3 for t in first}, "background_e": float(background)}
 
 

@@ -13,7 +13,7 @@
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/config/scenario_draws.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/dataset/dataset_digest.h"
 #include "launch/dataset/dataset_directory.h"
 #include "launch/dataset/dataset_growth.h"
@@ -213,35 +213,40 @@ void dataset(const DatasetOptions& options) {
           : ", complete: dataset.json");
 }
 
-}  // namespace
-
-void add_dataset_command(CLI::App& app) {
+void add_dataset_options(CLI::App& command) {
   auto options = std::make_shared<DatasetOptions>();
-  auto* command = app.add_subcommand(
-      "dataset",
-      "Makes labelled frames of a scenario whose values are drawn for each seed, as tar archives "
-      "for WebDataset (docs/datasets.md). The bytes depend on scenario, seeds and --per-shard "
-      "alone; stopped, the same command continues; with more seeds it adds them");
-  command->add_option("scenario", options->scenario, "scenario (YAML) with distributions")
+  command.add_option("scenario", options->scenario, "scenario (YAML) with distributions")
       ->required();
-  command->add_option("--seeds", options->seeds, "A..B, one sample each")->required();
-  command->add_option("--out", options->out, "directory of the data set")
+  command.add_option("--seeds", options->seeds, "A..B, one sample each")->required();
+  command.add_option("--out", options->out, "directory of the data set")
       ->default_val("out/dataset");
   command
-      ->add_option("--shard", options->shard,
-                   "i/n: only the i-th of every n archives, for the tasks of a job array")
+      .add_option("--shard", options->shard,
+                  "i/n: only the i-th of every n archives, for the tasks of a job array")
       ->default_val("1/1");
-  command->add_option("--per-shard", options->seeds_per_shard, "seeds in an archive")
+  command.add_option("--per-shard", options->seeds_per_shard, "seeds in an archive")
       ->default_val(100)
       ->check(CLI::Range(1, 1'000'000));
   command
-      ->add_option("--workers", options->workers,
-                   "number of processes; by default one for each processor")
+      .add_option("--workers", options->workers,
+                  "number of processes; by default one for each processor")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--check", options->check, "only read the scenario of every seed");
-  command->add_flag("--force", options->force,
-                    "replace the data set in the directory, and files with the names of one");
-  command->callback([options] { dataset(*options); });
+  command.add_flag("--check", options->check, "only read the scenario of every seed");
+  command.add_flag("--force", options->force,
+                   "replace the data set in the directory, and files with the names of one");
+  command.callback([options] { dataset(*options); });
+}
+
+}  // namespace
+
+Command dataset_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary = "Makes labelled frames of a scenario whose values are drawn, as tar archives",
+          .details =
+              "The archives are for WebDataset (docs/datasets.md). The bytes depend on scenario, "
+              "seeds and --per-shard alone; stopped, the same command continues; with more seeds "
+              "it adds them",
+          .add_options = add_dataset_options};
 }
 
 }  // namespace dmise

@@ -19,7 +19,7 @@
 #include "core/base/printable.h"
 #include "core/base/version.h"
 #include "core/dataset/tar.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/dataset/dataset_growth.h"
 #include "nodes/runtime/process/event.h"
 #include "sensors/dataset/frame_labels.h"

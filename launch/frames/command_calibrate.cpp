@@ -7,7 +7,7 @@
 #include "core/base/files/regular_file.h"
 #include "core/base/files/whole_file.h"
 #include "core/camera_calibration/calibrate_camera.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
 #include "launch/frames/frame_options.h"
@@ -80,29 +80,33 @@ void add_stated_options(CLI::App& command, StatedCamera& stated) {
          "photo-electrons a photon; if not given it is in the transmission");
 }
 
-}  // namespace
-
-void add_calibrate_command(CLI::App& app) {
+void add_calibrate_options(CLI::App& command) {
   auto o = std::make_shared<CalibrateOptions>();
   o->stated.band = "bessell-V";
-  auto* command = app.add_subcommand(
-      "calibrate",
-      "Measures a camera by its own frames of bias, dark, flat and stars, and writes the camera "
-      "file for scenarios, each value with its deviation");
-  command->add_option("frames", o->frames,
-                      "FITS files, sorted by IMAGETYP, else by exposure, level and stars");
-  command->add_option("--bias", o->biases, "frames without light and time");
-  command->add_option("--dark", o->darks, "frames without light");
-  command->add_option("--flat", o->flats, "frames of even light");
-  command->add_option("--light", o->lights, "frames of stars");
-  command->add_option("--out", o->out, "camera file to write (YAML)");
-  command->add_flag("--json", o->json, "print one line of JSON");
-  add_stated_options(*command, o->stated);
-  add_frame_options(*command, o->choice);
-  add_star_catalogue_option(*command, o->catalogue, true);
-  add_threads_option(*command, o->threads, "number of threads; the result does not depend on it");
-  command->footer("docs/howto/calibrate-a-camera.md shows how, and how well it measures");
-  command->callback([o] { calibrate(*o); });
+  command.add_option("frames", o->frames,
+                     "FITS files, sorted by IMAGETYP, else by exposure, level and stars");
+  command.add_option("--bias", o->biases, "frames without light and time");
+  command.add_option("--dark", o->darks, "frames without light");
+  command.add_option("--flat", o->flats, "frames of even light");
+  command.add_option("--light", o->lights, "frames of stars");
+  command.add_option("--out", o->out, "camera file to write (YAML)");
+  command.add_flag("--json", o->json, "print one line of JSON");
+  add_stated_options(command, o->stated);
+  add_frame_options(command, o->choice);
+  add_star_catalogue_option(command, o->catalogue, true);
+  add_threads_option(command, o->threads, "number of threads; the result does not depend on it");
+  command.footer("docs/howto/calibrate-a-camera.md shows how, and how well it measures");
+  command.callback([o] { calibrate(*o); });
+}
+
+}  // namespace
+
+Command calibrate_command() {
+  return {
+      .group = CommandGroup::frames,
+      .summary = "Measures a camera by its own frames, and writes the camera file with deviations",
+      .details = "From frames of bias, dark, flat and stars. The file is one for scenarios",
+      .add_options = add_calibrate_options};
 }
 
 }  // namespace dmise

@@ -9,7 +9,7 @@
 #include "core/calibration/calibrated_detection.h"
 #include "core/detection/detection_lines.h"
 #include "core/ingest/star_trails.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/frames/frame_options.h"
 #include "launch/frames/frame_sequence.h"
@@ -99,37 +99,42 @@ void print_detections(const DetectOptions& o) {
   for (const std::string& path : o.frames) print_detections_in(path, o, detector, threads);
 }
 
+void add_detect_options(CLI::App& command) {
+  auto o = std::make_shared<DetectOptions>();
+  command
+      .add_option("frame", o->frames,
+                  "FITS files of a run, or of any camera: each is searched alone, or all with "
+                  "--sequence")
+      ->required();
+  command.add_flag("--sequence", o->sequence,
+                   "find what moves over the frames: three or more of one sensor, of one exposure "
+                   "time and of one field");
+  command
+      .add_option("--max-rate", o->max_rate_arcsec_per_s,
+                  "greatest rate against the detector that --sequence searches [arcsec/s]; else "
+                  "that at which a point trails by twice the PSF's width")
+      ->check(number_between(1e-3, 1e5));
+  command.add_flag("--report", o->report,
+                   "print the frame's report, as in frames.jsonl, before its detections");
+  command.add_flag("--light-curves", o->light_curves,
+                   "measure the light along each streak over time, and its period");
+  add_frame_options(command, o->choice);
+  add_star_catalogue_option(command, o->catalogue, true);
+  command.add_flag("--blind", o->blind,
+                   "find where the frame points by its stars alone, before detection");
+  add_threads_option(command, o->threads);
+  command.callback([o] { print_detections(*o); });
+}
+
 }  // namespace
 
-void add_detect_command(CLI::App& app) {
-  auto o = std::make_shared<DetectOptions>();
-  auto* command = app.add_subcommand(
-      "detect",
-      "Detects what is no star in frames, from their counts and headers and a catalogue of stars; "
-      "JSON lines, the same as a run's detections.jsonl with the run's catalogue");
-  command
-      ->add_option("frame", o->frames,
-                   "FITS files of a run, or of any camera: each is searched alone, or all with "
-                   "--sequence")
-      ->required();
-  command->add_flag("--sequence", o->sequence,
-                    "find what moves over the frames: three or more of one sensor, of one exposure "
-                    "time and of one field");
-  command
-      ->add_option("--max-rate", o->max_rate_arcsec_per_s,
-                   "greatest rate against the detector that --sequence searches [arcsec/s]; else "
-                   "that at which a point trails by twice the PSF's width")
-      ->check(number_between(1e-3, 1e5));
-  command->add_flag("--report", o->report,
-                    "print the frame's report, as in frames.jsonl, before its detections");
-  command->add_flag("--light-curves", o->light_curves,
-                    "measure the light along each streak over time, and its period");
-  add_frame_options(*command, o->choice);
-  add_star_catalogue_option(*command, o->catalogue, true);
-  command->add_flag("--blind", o->blind,
-                    "find where the frame points by its stars alone, before detection");
-  add_threads_option(*command, o->threads);
-  command->callback([o] { print_detections(*o); });
+Command detect_command() {
+  return {
+      .group = CommandGroup::frames,
+      .summary =
+          "Detects what is no star in frames, by their counts, headers and a catalogue of stars",
+      .details = "Prints JSON lines, the same as a run's detections.jsonl with the run's catalogue",
+      .add_options = add_detect_options};
 }
 
 }  // namespace dmise

@@ -10,7 +10,7 @@
 #include "core/config/objects/material_config.h"
 #include "core/config/scenario.h"
 #include "core/discrimination/discrimination_text.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/run/progress.h"
 
@@ -128,49 +128,54 @@ void run_discriminate(const DiscriminateOptions& options) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-}  // namespace
-
-void add_discriminate_command(CLI::App& app) {
+void add_discriminate_options(CLI::App& command) {
   auto options = std::make_shared<DiscriminateOptions>();
-  auto* command = app.add_subcommand(
-      "discriminate",
-      "Tells what objects are made of by their light in two bands or more: aperture photometry in "
-      "the frames of a run in orbit, the Sun's spectrum taken out, and the materials of a library "
-      "compared. Or says which bands, exposure, aperture and distance tell two materials apart");
-  auto* run = command->add_option("run", options->run, "directory of a run that has ended");
-  auto* design = command->add_option("--design", options->design,
-                                     "scenario with the two sensors to design, instead of a run");
+  auto* run = command.add_option("run", options->run, "directory of a run that has ended");
+  auto* design = command.add_option("--design", options->design,
+                                    "scenario with the two sensors to design, instead of a run");
   design->excludes(run);
-  command->add_option("--materials", options->library,
-                      "file of materials, instead of the installed library");
-  command->add_option("--among", options->among, "names of the materials to compare; default: all")
+  command.add_option("--materials", options->library,
+                     "file of materials, instead of the installed library");
+  command.add_option("--among", options->among, "names of the materials to compare; default: all")
       ->delimiter(',');
-  command->add_option("--sensors", options->sensors, "names of the sensors; default: all")
+  command.add_option("--sensors", options->sensors, "names of the sensors; default: all")
       ->delimiter(',');
-  command->add_option("--is", options->known,
-                      "OBJECT=MATERIAL: what an object is known to be, for the confusion matrix");
+  command.add_option("--is", options->known,
+                     "OBJECT=MATERIAL: what an object is known to be, for the confusion matrix");
   Aperture& aperture = options->aperture;
-  add_number_option(*command, "--radius-px", aperture.radius_px, 0.5, 500.0, "of the aperture");
-  add_number_option(*command, "--inner-px", aperture.inner_px, 0.5, 500.0,
+  add_number_option(command, "--radius-px", aperture.radius_px, 0.5, 500.0, "of the aperture");
+  add_number_option(command, "--inner-px", aperture.inner_px, 0.5, 500.0,
                     "of the ring of background");
-  add_number_option(*command, "--outer-px", aperture.outer_px, 1.0, 500.0,
+  add_number_option(command, "--outer-px", aperture.outer_px, 1.0, 500.0,
                     "of the ring of background");
-  add_number_option(*command, "--range-km", options->range_km, 1e-3, 1e7,
+  add_number_option(command, "--range-km", options->range_km, 1e-3, 1e7,
                     "distance of the object of a design")
       ->needs(design);
-  add_number_option(*command, "--area-m2", options->area_m2, 1e-9, 1e9,
+  add_number_option(command, "--area-m2", options->area_m2, 1e-9, 1e9,
                     "of a design's object, times its phase function")
       ->needs(design);
-  add_number_option(*command, "--right", options->right, 0.5001, 0.999999,
+  add_number_option(command, "--right", options->right, 0.5001, 0.999999,
                     "probability of the right material that a design is for")
       ->needs(design);
-  add_threads_option(*command, options->threads);
-  command->add_flag("--json", options->json, "print JSON");
+  add_threads_option(command, options->threads);
+  command.add_flag("--json", options->json, "print JSON");
   command
-      ->add_option("--plots", options->plots,
-                   "directory: design-range.svg and design-exposure.svg of a design")
+      .add_option("--plots", options->plots,
+                  "directory: design-range.svg and design-exposure.svg of a design")
       ->needs(design);
-  command->callback([options] { run_discriminate(*options); });
+  command.callback([options] { run_discriminate(*options); });
+}
+
+}  // namespace
+
+Command discriminate_command() {
+  return {.group = CommandGroup::frames,
+          .summary = "Tells what objects are made of by their light in two bands or more",
+          .details =
+              "By aperture photometry in the frames of a run in orbit: the Sun's spectrum is taken "
+              "out, and the materials of a library are compared. Or says which bands, exposure, "
+              "aperture and distance tell two materials apart",
+          .add_options = add_discriminate_options};
 }
 
 }  // namespace dmise

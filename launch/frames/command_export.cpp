@@ -18,7 +18,7 @@
 #include "core/exchange/export_format.h"
 #include "core/orbit/elements/catalogue.h"
 #include "core/run/run_files.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/run/progress.h"
 
 namespace dmise {
@@ -179,30 +179,33 @@ std::string format_help() {
   return text;
 }
 
-}  // namespace
-
-void add_export_command(CLI::App& app) {
+void add_export_options(CLI::App& command) {
   auto options = std::make_shared<ExportOptions>();
-  auto* command = app.add_subcommand(
-      "export", "Writes the products of a run in formats of other programs (docs/exchange.md)");
-  command->add_option("run", options->run, "directory of a run that has ended")->required();
-  command->add_option("--to", options->to, format_help())->required();
-  command->add_option("--out", options->out,
-                      "file or directory, as the format has it; by default below RUN/export");
-  command->add_option("--sensor", options->sensor, "only products of this sensor");
-  auto* truth = command->add_flag("--truth", options->truth, "what was, from truth.jsonl");
+  command.add_option("run", options->run, "directory of a run that has ended")->required();
+  command.add_option("--to", options->to, format_help())->required();
+  command.add_option("--out", options->out,
+                     "file or directory, as the format has it; by default below RUN/export");
+  command.add_option("--sensor", options->sensor, "only products of this sensor");
+  auto* truth = command.add_flag("--truth", options->truth, "what was, from truth.jsonl");
   command
-      ->add_flag("--detections", options->detections,
-                 "what the sensors found, from detections.jsonl")
+      .add_flag("--detections", options->detections,
+                "what the sensors found, from detections.jsonl")
       ->excludes(truth);
   command
-      ->add_flag("--tracks", options->tracks,
-                 "what the fusion node made of them, from tracks.jsonl")
+      .add_flag("--tracks", options->tracks, "what the fusion node made of them, from tracks.jsonl")
       ->excludes(truth)
       ->excludes("--detections");
-  command->add_option("--catalogue", options->catalogues,
-                      "omm: files of element sets instead of those that the scenario names");
-  command->callback([options] { run_export(*options); });
+  command.add_option("--catalogue", options->catalogues,
+                     "omm: files of element sets instead of those that the scenario names");
+  command.callback([options] { run_export(*options); });
+}
+
+}  // namespace
+
+Command export_command() {
+  return {.group = CommandGroup::frames,
+          .summary = "Writes the products of a run in formats of other programs (docs/exchange.md)",
+          .add_options = add_export_options};
 }
 
 }  // namespace dmise

@@ -11,7 +11,7 @@
 #include "core/score/score_charts.h"
 #include "core/score/score_text.h"
 #include "core/score/scored_run.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/run/progress.h"
 #include "launch/run/star_catalogue_option.h"
@@ -56,34 +56,38 @@ void run_score(const ScoreOptions& options) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-}  // namespace
-
-void add_score_command(CLI::App& app) {
+void add_score_options(CLI::App& command) {
   auto options = std::make_shared<ScoreOptions>();
-  auto* command = app.add_subcommand(
-      "score",
-      "Compares detections with truth: probability of detection, false alarms, errors of position, "
-      "magnitude and ends, and whether their covariances are honest. Of a run, or of any FITS "
-      "frames in which it detects itself");
-  auto* run = command->add_option("run", options->run, "directory of a run that has ended");
-  auto* frames = command->add_option("--frames", options->frames,
-                                     "directory of FITS frames, instead of a run");
-  auto* truth = command->add_option("--truth", options->truth, truth_csv_help);
+  auto* run = command.add_option("run", options->run, "directory of a run that has ended");
+  auto* frames =
+      command.add_option("--frames", options->frames, "directory of FITS frames, instead of a run");
+  auto* truth = command.add_option("--truth", options->truth, truth_csv_help);
   frames->needs(truth)->excludes(run);
   truth->needs(frames);
-  add_star_catalogue_option(*command, options->catalogue, true);
-  add_threads_option(*command, options->threads, "number of threads that detect in --frames");
-  add_number_option(*command, "--gate-px", options->settings.gate_px, 0.1, 1000.0,
+  add_star_catalogue_option(command, options->catalogue, true);
+  add_threads_option(command, options->threads, "number of threads that detect in --frames");
+  add_number_option(command, "--gate-px", options->settings.gate_px, 0.1, 1000.0,
                     "greatest distance of a detection from its truth's trail");
   add_number_option(
-      *command, "--threshold", options->settings.threshold_snr, 0.0, 1000.0,
+      command, "--threshold", options->settings.threshold_snr, 0.0, 1000.0,
       "SNR at which the detector finds half; sources of a lower expected SNR that are "
       "not found count as faint, not as missed");
-  command->add_flag("--json", options->json, "print JSON");
-  command->add_option("--csv", options->csv, "file: a row per truth and per false alarm");
-  command->add_option("--plots", options->plots,
-                      "directory: detection.svg, position.svg, magnitude.svg");
-  command->callback([options] { run_score(*options); });
+  command.add_flag("--json", options->json, "print JSON");
+  command.add_option("--csv", options->csv, "file: a row per truth and per false alarm");
+  command.add_option("--plots", options->plots,
+                     "directory: detection.svg, position.svg, magnitude.svg");
+  command.callback([options] { run_score(*options); });
+}
+
+}  // namespace
+
+Command score_command() {
+  return {.group = CommandGroup::frames,
+          .summary = "Compares detections with truth, of a run or of any FITS frames",
+          .details =
+              "Probability of detection, false alarms, errors of position, magnitude and ends, and "
+              "whether their covariances are honest. In FITS frames it detects itself",
+          .add_options = add_score_options};
 }
 
 }  // namespace dmise

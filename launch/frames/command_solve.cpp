@@ -8,7 +8,7 @@
 #include "core/base/units.h"
 #include "core/calibration/solve_frame.h"
 #include "core/ingest/star_trails.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/frames/frame_options.h"
 #include "launch/run/star_catalogue_option.h"
@@ -111,34 +111,38 @@ void solve(const SolveOptions& o) {
     print_text(solution);
 }
 
-}  // namespace
-
-void add_solve_command(CLI::App& app) {
+void add_solve_options(CLI::App& command) {
   auto o = std::make_shared<SolveOptions>();
-  auto* command = app.add_subcommand(
-      "solve", "Finds where a frame points, its plate and its zero point from its stars");
-  command->add_option("frame", o->frame, "FITS file of a run, or of any camera")->required();
-  add_frame_options(*command, o->choice);
-  command->add_flag("--blind", o->blind, "use neither the pointing nor the focal length");
+  command.add_option("frame", o->frame, "FITS file of a run, or of any camera")->required();
+  add_frame_options(command, o->choice);
+  command.add_flag("--blind", o->blind, "use neither the pointing nor the focal length");
   auto* field =
-      command->add_option("--field", o->field_deg, "width of the frame [deg], within 10 %")
+      command.add_option("--field", o->field_deg, "width of the frame [deg], within 10 %")
           ->check(number_between(0.1, 180.0));
-  command->add_option("--scale-low", o->scale_low_arcsec, "least scale [arcsec/px]")
+  command.add_option("--scale-low", o->scale_low_arcsec, "least scale [arcsec/px]")
       ->check(number_between(1e-3, 1e5))
       ->excludes(field);
-  command->add_option("--scale-high", o->scale_high_arcsec, "greatest scale [arcsec/px]")
+  command.add_option("--scale-high", o->scale_high_arcsec, "greatest scale [arcsec/px]")
       ->check(number_between(1e-3, 1e5))
       ->excludes(field);
-  add_star_catalogue_option(*command, o->catalogue, false);
-  command->add_option("--out", o->out,
-                      "FITS file of the frame with the solved header, uncompressed");
-  command->add_flag("--json", o->json, "print one line of JSON");
-  add_threads_option(*command, o->threads);
-  command->callback([o, field] {
+  add_star_catalogue_option(command, o->catalogue, false);
+  command.add_option("--out", o->out,
+                     "FITS file of the frame with the solved header, uncompressed");
+  command.add_flag("--json", o->json, "print one line of JSON");
+  add_threads_option(command, o->threads);
+  command.callback([o, field] {
     if (!o->blind && (field->count() || o->scale_low_arcsec > 0 || o->scale_high_arcsec > 0))
       throw ConfigError("--field and --scale-*: take --blind");
     solve(*o);
   });
+}
+
+}  // namespace
+
+Command solve_command() {
+  return {.group = CommandGroup::frames,
+          .summary = "Finds where a frame points, its plate and its zero point from its stars",
+          .add_options = add_solve_options};
 }
 
 }  // namespace dmise

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/config/yaml/search_path.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/process/supervisor.h"
 
 namespace dmise {
@@ -22,17 +22,21 @@ namespace {
   become_program("dmise", arguments);
 }
 
+void add_demo_options(CLI::App& command) {
+  auto out = std::make_shared<std::string>("out/demo");
+  command.add_option("--out", *out, "directory of the products")->capture_default_str();
+  command.allow_extras();
+  command.callback([&command, out] { launch_demo(*out, command.remaining()); });
+}
+
 }  // namespace
 
-void add_demo_command(CLI::App& app) {
-  auto out = std::make_shared<std::string>("out/demo");
-  auto* command = app.add_subcommand(
-      "demo",
-      "Launches the shipped demonstration: two minutes of an evening with four sensors. Takes the "
-      "options of launch");
-  command->add_option("--out", *out, "directory of the products")->capture_default_str();
-  command->allow_extras();
-  command->callback([command, out] { launch_demo(*out, command->remaining()); });
+Command demo_command() {
+  return {
+      .group = CommandGroup::scenarios,
+      .summary = "Launches the shipped demonstration: two minutes of an evening with four sensors",
+      .details = "Takes the options of launch",
+      .add_options = add_demo_options};
 }
 
 }  // namespace dmise

@@ -15,7 +15,7 @@
 #include "core/base/printable.h"
 #include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/process/file_lock.h"
 #include "launch/process/own_address.h"
@@ -289,44 +289,48 @@ void join(JoinOptions options) {
   Join(options, scenario).run();
 }
 
-}  // namespace
-
-void add_join_command(CLI::App& app) {
+void add_join_options(CLI::App& command) {
   auto options = std::make_shared<JoinOptions>();
-  auto* command = app.add_subcommand(
-      "join",
-      "Runs one node of a run whose time-master is elsewhere (`dmise launch --nodes-elsewhere`)");
-  command->add_option("scenario", options->scenario, "scenario of the run (YAML)")->required();
+  command.add_option("scenario", options->scenario, "scenario of the run (YAML)")->required();
   command
-      ->add_option("node", options->node,
-                   nodes_to_be() + ": the first free one; a surplus process stands by")
+      .add_option("node", options->node,
+                  nodes_to_be() + ": the first free one; a surplus process stands by")
       ->required();
-  add_master_option(*command, "--master", options->master)->required();
-  command->add_option("--out", options->out, "directory of the run, shared by its nodes")
+  add_master_option(command, "--master", options->master)->required();
+  command.add_option("--out", options->out, "directory of the run, shared by its nodes")
       ->default_val("out/launch");
   command
-      ->add_option("--slot", options->slot,
-                   "for `sensor` and `own-node`: index in the scenario, from 1 (or DMISE_SLOT); a "
-                   "surplus process exits at once")
+      .add_option("--slot", options->slot,
+                  "for `sensor` and `own-node`: index in the scenario, from 1 (or DMISE_SLOT); a "
+                  "surplus process exits at once")
       ->check(CLI::Range(1, 1 << 20));
-  command->add_option("--keys", options->keys,
-                      "directory of keys (dmise keygen); without it loopback only");
+  command.add_option("--keys", options->keys,
+                     "directory of keys (dmise keygen); without it loopback only");
   command
-      ->add_option("--host", options->host,
-                   "where the node's own sockets bind, tcp://A.B.C.D:0; default: this machine's "
-                   "address towards the time-master")
+      .add_option("--host", options->host,
+                  "where the node's own sockets bind, tcp://A.B.C.D:0; default: this machine's "
+                  "address towards the time-master")
       ->check(transport_address());
-  add_seed_option(*command, options->seed, "as given to the launch");
-  command->add_option("--plan", options->plan, "as given to the launch");
-  add_allow_programs_flag(*command, options->allow_programs);
-  command->add_option("--program", options->program,
-                      "of an own node: what it runs, instead of the scenario's program: "
-                      "\"python3 gnc.py\", from this directory");
-  command->allow_extras();  // for the node's program: --threads, --log-level
-  command->callback([options, command] {
-    options->more = command->remaining();
+  add_seed_option(command, options->seed, "as given to the launch");
+  command.add_option("--plan", options->plan, "as given to the launch");
+  add_allow_programs_flag(command, options->allow_programs);
+  command.add_option("--program", options->program,
+                     "of an own node: what it runs, instead of the scenario's program: "
+                     "\"python3 gnc.py\", from this directory");
+  command.allow_extras();  // for the node's program: --threads, --log-level
+  command.callback([options, &command] {
+    options->more = command.remaining();
     join(*options);
   });
+}
+
+}  // namespace
+
+Command join_command() {
+  return {.group = CommandGroup::networks,
+          .summary = "Runs one node of a run whose time-master is elsewhere",
+          .details = "The time-master is that of `dmise launch --nodes-elsewhere`",
+          .add_options = add_join_options};
 }
 
 }  // namespace dmise

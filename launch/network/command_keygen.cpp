@@ -10,7 +10,7 @@
 #include "core/config/node_kinds.h"
 #include "core/config/node_names.h"
 #include "core/config/scenario.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/process/host_names.h"
 #include "nodes/runtime/security/security.h"
 
@@ -88,35 +88,39 @@ void keygen(const KeygenOptions& options) {
   if (options.rings) make_rings(options.directory, rings);
 }
 
-}  // namespace
-
-void add_keygen_command(CLI::App& app) {
+void add_keygen_options(CLI::App& command) {
   auto options = std::make_shared<KeygenOptions>();
-  auto* command =
-      app.add_subcommand("keygen",
-                         "Creates keys: NAME.key, which only its owner may read, and NAME.pub, "
-                         "which grants access. Remove NAME.pub from the directory of a process to "
-                         "revoke the key");
-  command->add_option("directory", options->directory, "directory of keys")->required();
-  command->add_option("names", options->names, "names of nodes of a run, observers, operator");
-  command->add_option("--scenario", options->scenario, "also for every process of this scenario");
-  command->add_flag("--rings", options->rings,
-                    "also rings/sensors.keys, the sensors' keys in one file, rings/own-nodes.keys, "
-                    "those of own nodes, rings/everybody.pubs, all public keys, and with --hosts a "
-                    "ring for each agent and its sensors: for containers");
+  command.add_option("directory", options->directory, "directory of keys")->required();
+  command.add_option("names", options->names, "names of nodes of a run, observers, operator");
+  command.add_option("--scenario", options->scenario, "also for every process of this scenario");
+  command.add_flag("--rings", options->rings,
+                   "also rings/sensors.keys, the sensors' keys in one file, rings/own-nodes.keys, "
+                   "those of own nodes, rings/everybody.pubs, all public keys, and with --hosts a "
+                   "ring for each agent and its sensors: for containers");
   command
-      ->add_option("--nodes", options->nodes,
-                   "the names are agents (dmise-host-agent) that may speak for NODE[,NODE..] only")
+      .add_option("--nodes", options->nodes,
+                  "the names are agents (dmise-host-agent) that may speak for NODE[,NODE..] only")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
-      ->add_option(
+      .add_option(
           "--hosts", options->hosts,
           "with --scenario: also for this number of agents, each for the sensors that `dmise "
           "launch --hosts` assigns to it")
       ->check(CLI::Range(0, 10000));
-  command->add_flag("--truth", options->truth, "the names may receive truth");
-  command->callback([options] { keygen(*options); });
+  command.add_flag("--truth", options->truth, "the names may receive truth");
+  command.callback([options] { keygen(*options); });
+}
+
+}  // namespace
+
+Command keygen_command() {
+  return {.group = CommandGroup::networks,
+          .summary = "Creates keys of nodes, observers and operators for encrypted connections",
+          .details =
+              "NAME.key, which only its owner may read, and NAME.pub, which grants access. Remove "
+              "NAME.pub from the directory of a process to revoke the key",
+          .add_options = add_keygen_options};
 }
 
 }  // namespace dmise

@@ -20,7 +20,7 @@
 #include "core/run/run_files.h"
 #include "core/sim/controller.h"
 #include "core/sim/participant.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
 #include "launch/run/node_makers.h"
@@ -28,7 +28,7 @@
 #include "launch/run/progress.h"
 #include "launch/run/replayed_nodes.h"
 #include "launch/run/run_outcome.h"
-#include "launch/run/scenario_outlook.h"
+#include "launch/run/scenario_forecast.h"
 #include "nodes/runtime/process/event.h"
 #include "sensors/frame/recorded_plans.h"
 #include "sensors/frame/sensor_evaluator.h"
@@ -53,7 +53,7 @@ class EmbeddedRun {
   EmbeddedRun(const Scenario& scenario, ScenarioInputs scene, const RunDirectory& directory,
               int thread_count, Tick first_tick, ReplayedNodes replayed)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
-    print_outlook(scenario, scene, make_clock(scenario));
+    print_forecast(scenario, scene, make_clock(scenario));
     NodeParts parts{scenario,           scene,    directory.digest(),
                     directory.path(),   threads_, [this](const std::string& line) { note(line); },
                     std::move(replayed)};
@@ -216,26 +216,31 @@ void run(const RunOptions& options) {
   std::_Exit(exit_code(outcome.status));
 }
 
+void add_run_options(CLI::App& command) {
+  auto options = std::make_shared<RunOptions>();
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_option("--out", options->out, "directory of the products")->default_val("out/run");
+  add_threads_option(command, options->threads,
+                     "number of threads; the products do not depend on it");
+  add_seed_option(command, options->seed, "seed of the random numbers, instead of the scenario's");
+  command.add_option("--plan", options->plan,
+                     "run.json of a run: its frames' levels of effects instead of a plan");
+  add_allow_programs_flag(command, options->allow_programs);
+  command
+      .add_option("--replay-node", options->replayed,
+                  "NODE=FILE: what the node has said in a recorded run (MCAP), in place of its "
+                  "program; for several nodes give it several times")
+      ->allow_extra_args(false);
+  command.add_flag("--force", options->force, "replace the products in the directory");
+  command.callback([options] { run(*options); });
+}
+
 }  // namespace
 
-void add_run_command(CLI::App& app) {
-  auto options = std::make_shared<RunOptions>();
-  auto* command = app.add_subcommand("run", "Runs a scenario in this process, without a network");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--out", options->out, "directory of the products")->default_val("out/run");
-  add_threads_option(*command, options->threads,
-                     "number of threads; the products do not depend on it");
-  add_seed_option(*command, options->seed, "seed of the random numbers, instead of the scenario's");
-  command->add_option("--plan", options->plan,
-                      "run.json of a run: its frames' levels of effects instead of a plan");
-  add_allow_programs_flag(*command, options->allow_programs);
-  command
-      ->add_option("--replay-node", options->replayed,
-                   "NODE=FILE: what the node has said in a recorded run (MCAP), in place of its "
-                   "program; for several nodes give it several times")
-      ->allow_extra_args(false);
-  command->add_flag("--force", options->force, "replace the products in the directory");
-  command->callback([options] { run(*options); });
+Command run_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary = "Runs a scenario in this process, without a network",
+          .add_options = add_run_options};
 }
 
 }  // namespace dmise

@@ -4,19 +4,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <memory>
 
 #include "core/base/error.h"
-#include "core/base/formatted.h"
-#include "core/base/printable.h"
 #include "core/sim/run_phase.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
+#include "launch/process/status_table.h"
 #include "launch/process/status_watch.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
@@ -27,40 +24,12 @@ namespace {
 struct StatusOptions {
   std::string master, keys;
   bool once = false, watch = false, healthy = false;
-  ClockRequest request;  // what `dmise clock` asks for
 };
 
-constexpr double patience_s = 2.0;
+constexpr double status_within_s = 2.0;
 constexpr auto interval = std::chrono::milliseconds(500);
 
 Security security_of(const StatusOptions& options) { return {options.keys, operator_name}; }
-
-std::string table(const RunStatus& status) {
-  std::string text =
-      formatted("run %016llx  %s%s  tick %ld of %ld  %.1f s simulated\n",
-                static_cast<unsigned long long>(status.run_id), phase_name(status.phase),
-                status.paused ? ", paused" : "", long(status.settled), long(status.last_tick),
-                double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
-  if (!status.start_utc.empty()) text += "start: " + printable(status.start_utc) + "\n";
-  if (!status.cause.empty()) text += "cause: " + printable(status.cause) + "\n";
-  if (!status.missing.empty()) text += "missing: " + printable(joined(status.missing)) + "\n";
-  if (!status.holding.empty()) text += "waiting for: " + printable(joined(status.holding)) + "\n";
-  if (status.pace > 0.0) text += formatted("pace: %g times real time\n", status.pace);
-  if (status.overruns > 0)
-    text += formatted("overruns: %llu, at most %.2f s late\n",
-                      static_cast<unsigned long long>(status.overruns), status.worst_lag_s);
-  text += formatted("%-24s %-8s %6s %5s %10s %10s %10s\n", "node", "state", "tick", "start",
-                    "compute s", "message s", "wait s");
-  for (const auto& node : status.nodes)
-    text +=
-        formatted("%-24s %-8s %6ld %5llu %10.2f %10.2f %10.2f\n", printable(node.name, 64).c_str(),
-                  !node.alive     ? "lost"
-                  : node.observer ? "observes"
-                                  : "alive",
-                  long(node.done), static_cast<unsigned long long>(node.incarnation),
-                  node.times.compute_s, node.times.messaging_s, node.times.waiting_s);
-  return text;
-}
 
 /// The clock runs, or waits for the start or its end, and no node is lost.
 bool healthy(const RunStatus& status) {
@@ -137,7 +106,7 @@ void watch(const StatusOptions& options, const Security& security, const RunStat
       if (run.status().phase == Phase::ended || run.status().phase == Phase::failed) break;
       if (terminal.ended(interval)) return;
       try {
-        run.take(ask_master(options.master, patience_s, security), seconds_now());
+        run.take(ask_master(options.master, status_within_s, security), seconds_now());
       } catch (const Error& error) {
         run.miss(error.what(), seconds_now());
         if (run.silent_s() > lost_after_s) break;
@@ -150,81 +119,39 @@ void watch(const StatusOptions& options, const Security& security, const RunStat
 
 void show(const StatusOptions& options) {
   const Security security = security_of(options);
-  RunStatus status = ask_master(options.master, patience_s, security);
+  RunStatus status = ask_master(options.master, status_within_s, security);
   if (options.healthy) {
     if (!healthy(status)) throw Error(status.cause.empty() ? "a node is lost" : status.cause);
     return;
   }
   if (options.once || !isatty(STDOUT_FILENO)) {
-    std::fputs(table(status).c_str(), stdout);
+    std::fputs(status_table(status).c_str(), stdout);
     return;
   }
   watch(options, security, status);
 }
 
-void control(const StatusOptions& options) {
-  const RunStatus status =
-      control_master(options.master, patience_s, options.request, security_of(options));
-  std::fputs(table(status).c_str(), stdout);
-}
-
-void add_pace_verb(CLI::App& clock) {
+void add_status_options(CLI::App& command) {
   auto options = std::make_shared<StatusOptions>();
-  options->request.action = ClockAction::pace;
-  auto* verb = clock.add_subcommand("pace", "sets how fast simulated time passes");
-  add_master_option(*verb, "master", options->master)->required();
-  verb->add_option("factor", options->request.factor,
-                   "simulated seconds per second, 0 to 1e6; 0: as fast as possible")
-      ->required()
-      ->check(number_between(0.0, 1e6));
-  verb->add_option("--keys", options->keys, "directory with operator.key");
-  verb->callback([options] { control(*options); });
+  add_master_option(command, "master", options->master)->required();
+  command.add_option("--keys", options->keys, "directory with operator.key");
+  auto* once = command.add_flag("--once", options->once, "print once, also on a terminal");
+  command
+      .add_flag("--watch", options->watch,
+                "a live table until the run ends, q or Ctrl-C, as on a terminal without --once; "
+                "elsewhere it is printed once")
+      ->excludes(once);
+  command.add_flag("--healthy", options->healthy,
+                   "print nothing; exit with 0 if the run has not failed and no node is lost");
+  command.callback([options] { show(*options); });
 }
 
 }  // namespace
 
-void add_status_command(CLI::App& app) {
-  auto options = std::make_shared<StatusOptions>();
-  auto* command =
-      app.add_subcommand("status", "Shows the clock and nodes of a run; live on a terminal");
-  add_master_option(*command, "master", options->master)->required();
-  command->add_option("--keys", options->keys, "directory with operator.key");
-  auto* once = command->add_flag("--once", options->once, "print once, also on a terminal");
-  command
-      ->add_flag("--watch", options->watch,
-                 "a live table until the run ends, q or Ctrl-C, as on a terminal without --once; "
-                 "elsewhere it is printed once")
-      ->excludes(once);
-  command->add_flag("--healthy", options->healthy,
-                    "print nothing; exit with 0 if the run has not failed and no node is lost");
-  command->callback([options] { show(*options); });
-}
-
-void add_clock_command(CLI::App& app) {
-  auto* command = app.add_subcommand("clock", "Pauses, steps, paces or ends a run");
-  command->require_subcommand(1);
-  const std::map<std::string, std::pair<ClockAction, std::string>> actions{
-      {"pause", {ClockAction::pause, "stop after the last granted tick, or after this one"}},
-      {"step", {ClockAction::step, "run this many more ticks (default 1), then pause again"}},
-      {"go-on", {ClockAction::go_on, "end a pause"}},
-      {"end", {ClockAction::end_early, "end the run when all granted ticks are done"}},
-      {"abort", {ClockAction::abort, "end the run at once"}}};
-  for (const auto& [name, action] : actions) {
-    auto options = std::make_shared<StatusOptions>();
-    const bool steps = action.first == ClockAction::step;
-    options->request = {.action = action.first, .tick = steps ? 1 : 0};
-    auto* verb = command->add_subcommand(name, action.second);
-    add_master_option(*verb, "master", options->master)->required();
-    verb->add_option("--keys", options->keys, "directory with operator.key");
-    if (steps || action.first == ClockAction::pause)
-      verb->add_option(steps ? "ticks,--tick" : "tick,--tick", options->request.tick,
-                       steps ? "number of ticks" : "tick")
-          ->check(CLI::Range(Tick(steps), Tick(1) << 40));
-    if (action.first == ClockAction::end_early || action.first == ClockAction::abort)
-      verb->add_option("--reason", options->request.reason, "cause to record");
-    verb->callback([options] { control(*options); });
-  }
-  add_pace_verb(*command);
+Command status_command() {
+  return {.group = CommandGroup::networks,
+          .summary = "Shows the clock and nodes of a run; live on a terminal",
+          .add_options = add_status_options};
 }
 
 }  // namespace dmise

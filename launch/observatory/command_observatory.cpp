@@ -12,7 +12,7 @@
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
 #include "launch/observatory/run_clock.h"
@@ -208,64 +208,65 @@ void observe(const ObservatoryOptions& options) {
   finish_run(directory, scenario, outcome);
 }
 
-}  // namespace
-
-void add_observatory_command(CLI::App& app) {
+void add_observatory_options(CLI::App& command) {
   auto options = std::make_shared<ObservatoryOptions>();
-  auto* command = app.add_subcommand(
-      "observatory",
-      "Lets an observatory's software point and expose a scenario's cameras, by ASCOM Alpaca "
-      "and INDI");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--out", options->out, "directory of the products")
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_option("--out", options->out, "directory of the products")
       ->default_val("out/observatory");
-  auto* commands = command->add_option(
+  auto* commands = command.add_option(
       "--commands", options->commands,
       "night.jsonl of an observatory: makes its products again, without a server");
   command
-      ->add_option("--listen", options->listen,
-                   "IP address and port; port 0: any free port; addresses other than loopback need "
-                   "--tokens")
+      .add_option("--listen", options->listen,
+                  "IP address and port; port 0: any free port; addresses other than loopback need "
+                  "--tokens")
       ->capture_default_str();
   command
-      ->add_option(
+      .add_option(
           "--indi", options->indi,
           "serves INDI as well, at this loopback address and port; 127.0.0.1:7624 if none is "
           "given; INDI knows no tokens")
       ->expected(0, 1)
       ->default_str("127.0.0.1:" + std::to_string(indi_port));
-  command->add_option(
-      "--tokens", options->tokens,
-      "file with `view TOKEN` and `operator TOKEN`: who may read, also command; the "
-      "token is the password");
+  command.add_option("--tokens", options->tokens,
+                     "file with `view TOKEN` and `operator TOKEN`: who may read, also command; the "
+                     "token is the password");
   command
-      ->add_option("--discovery-port", options->discovery_port,
-                   "UDP port at which clients ask for servers")
+      .add_option("--discovery-port", options->discovery_port,
+                  "UDP port at which clients ask for servers")
       ->capture_default_str()
       ->check(CLI::Range(1, 65535));
-  command->add_flag("--no-discovery", options->no_discovery, "clients must know the address");
-  command->add_flag("--connected", options->connected,
-                    "Alpaca's devices are connected from the beginning, for clients that take this "
-                    "for granted");
-  auto* rate = add_number_option(*command, "--rate", options->rate, 0.01, 1000.0,
+  command.add_flag("--no-discovery", options->no_discovery, "clients must know the address");
+  command.add_flag("--connected", options->connected,
+                   "Alpaca's devices are connected from the beginning, for clients that take this "
+                   "for granted");
+  auto* rate = add_number_option(command, "--rate", options->rate, 0.01, 1000.0,
                                  "simulated seconds per second");
-  auto* run = command->add_option("--run", options->run,
-                                  "address of the time-master of a paced run that begins when the "
-                                  "scenario does: the night has its time, and ends with it");
+  auto* run = command.add_option("--run", options->run,
+                                 "address of the time-master of a paced run that begins when the "
+                                 "scenario does: the night has its time, and ends with it");
   run->excludes(rate)->excludes(commands);
-  command->add_option("--keys", options->keys, "directory with operator.key, for --run")
-      ->needs(run);
-  add_number_option(*command, "--slew-rate", options->devices.slew_rate_deg_per_s, 0.01, 100.0,
+  command.add_option("--keys", options->keys, "directory with operator.key, for --run")->needs(run);
+  add_number_option(command, "--slew-rate", options->devices.slew_rate_deg_per_s, 0.01, 100.0,
                     "of the telescopes [deg/s]");
-  add_number_option(*command, "--settle", options->devices.settle_s, 0.0, 100.0,
+  add_number_option(command, "--settle", options->devices.settle_s, 0.0, 100.0,
                     "of the telescopes after a slew [s]");
-  add_number_option(*command, "--readout", options->devices.readout_s, 0.0, 100.0,
+  add_number_option(command, "--readout", options->devices.readout_s, 0.0, 100.0,
                     "between the end of an exposure and its image [s]");
-  add_threads_option(*command, options->devices.threads,
+  add_threads_option(command, options->devices.threads,
                      "number of threads of each camera; the products do not depend on it");
-  add_seed_option(*command, options->seed, "seed of the random numbers, instead of the scenario's");
-  command->add_flag("--force", options->force, "replace the products in the directory");
-  command->callback([options] { observe(*options); });
+  add_seed_option(command, options->seed, "seed of the random numbers, instead of the scenario's");
+  command.add_flag("--force", options->force, "replace the products in the directory");
+  command.callback([options] { observe(*options); });
+}
+
+}  // namespace
+
+Command observatory_command() {
+  return {.group = CommandGroup::networks,
+          .summary =
+              "Lets an observatory's software use a scenario's cameras, by ASCOM Alpaca and INDI",
+          .add_options = add_observatory_options};
 }
 
 }  // namespace dmise

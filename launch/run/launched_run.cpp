@@ -31,7 +31,7 @@
 #include "launch/run/prepare_run.h"
 #include "launch/run/progress.h"
 #include "launch/run/run_outcome.h"
-#include "launch/run/scenario_outlook.h"
+#include "launch/run/scenario_forecast.h"
 #include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
@@ -390,7 +390,7 @@ void launch(const LaunchOptions& options) {
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();
-  print_outlook(scenario, scene, make_clock(scenario));
+  print_forecast(scenario, scene, make_clock(scenario));
   Launch run(options, scenario, directory, begin.first_tick);
   const RunOutcome outcome = run.run();
   finish_run(directory, scenario, outcome);

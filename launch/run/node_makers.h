@@ -8,7 +8,7 @@
 #include "core/sim/participant.h"
 #include "launch/run/replayed_nodes.h"
 #include "launch/run/run_directory.h"
-#include "launch/run/scenario_outlook.h"
+#include "launch/run/scenario_forecast.h"
 
 namespace dmise {
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/notes.h"
 #include "launch/run/resume_point.h"
 

@@ -18,7 +18,7 @@
 #include "core/propagation/catalogue_states.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
 #include "launch/scenes/star_index_files.h"
@@ -246,24 +246,19 @@ void add_star_commands(CLI::App& command) {
   });
 }
 
-}  // namespace
-
-void add_catalogue_command(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "catalogue",
-      "Element sets: content of a file, states at a time; sizes of objects. Stars: fetch, index");
-  command->require_subcommand(1);
-  add_star_commands(*command);
-  add_facts_command(*command);
+void add_catalogue_options(CLI::App& command) {
+  command.require_subcommand(1);
+  add_star_commands(command);
+  add_facts_command(command);
   auto options = std::make_shared<StatesOptions>();
   auto info_options = std::make_shared<FileOptions>();
-  auto* info = command->add_subcommand(
-      "info", "Content of a file: objects, orbits, epochs, refused records");
+  auto* info =
+      command.add_subcommand("info", "Content of a file: objects, orbits, epochs, refused records");
   add_file_options(*info, *info_options);
   info->callback([info_options] { print_info(*info_options); });
 
   auto synthetic = std::make_shared<SynthOptions>();
-  auto* synth = command->add_subcommand(
+  auto* synth = command.add_subcommand(
       "synth", "Prints a synthetic population (constellations, GEO belt, Molniya, debris)");
   synth->add_option("--objects", synthetic->objects, "number of objects")
       ->capture_default_str()
@@ -278,7 +273,7 @@ void add_catalogue_command(CLI::App& app) {
   synth->callback([synthetic] { print_synthetic(*synthetic); });
 
   auto* states =
-      command->add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
+      command.add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
   add_file_options(*states, options->file);
   states->add_option("--at", options->at, "UTC (ISO 8601) or Julian date")->required();
   states->add_option("--frame", options->frame, "teme, gcrs or itrs")
@@ -287,6 +282,18 @@ void add_catalogue_command(CLI::App& app) {
   states->add_option("--earth-orientation", options->earth_orientation,
                      "IERS finals file; without it UT1 equals UTC and there is no polar motion");
   states->callback([options] { print_states(*options); });
+}
+
+}  // namespace
+
+Command catalogue_command() {
+  return {.group = CommandGroup::predictions,
+          .summary =
+              "Inspects a catalogue of objects, makes one, or computes its states; indexes stars",
+          .details =
+              "Element sets: content of a file, states at a time; sizes of objects. Stars: fetch, "
+              "index",
+          .add_options = add_catalogue_options};
 }
 
 }  // namespace dmise

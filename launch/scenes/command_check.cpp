@@ -22,13 +22,13 @@
 #include "core/config/sensors/effect_list.h"
 #include "core/orbit/interpolation_error.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/process/host_names.h"
-#include "launch/run/scenario_outlook.h"
+#include "launch/run/scenario_forecast.h"
 #include "nodes/runtime/security/security.h"
+#include "sensors/forecast/forecast_text.h"
 #include "sensors/frame/make_sensor.h"
-#include "sensors/outlook/outlook_text.h"
 
 namespace dmise {
 namespace {
@@ -174,9 +174,9 @@ void print_interpolation(const Scenario& scenario) {
           node.name.c_str(), double(node.period_ticks) * scenario.tick.seconds());
 }
 
-void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool has_stars) {
-  for (const auto& note : outlook.notes) std::printf("note: %s\n", printable(note, 4000).c_str());
-  for (const auto& sensor : outlook.sensors) {
+void print_text(const Scenario& scenario, const ScenarioForecast& forecast, bool has_stars) {
+  for (const auto& note : forecast.notes) std::printf("note: %s\n", printable(note, 4000).c_str());
+  for (const auto& sensor : forecast.sensors) {
     for (const auto& line : lines_of(sensor)) std::printf("%s\n", line.c_str());
     const SensorConfig& config = sensor_named(scenario, sensor.sensor);
     if (const std::string evaluator = evaluator_of(config.effects); !evaluator.empty())
@@ -186,19 +186,19 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool h
                   sensor.sensor.c_str());
   }
   print_effects(scenario, has_stars);
-  if (outlook.objects > 0) print_interpolation(scenario);
-  for (const auto& warning : outlook.warnings)
+  if (forecast.objects > 0) print_interpolation(scenario);
+  for (const auto& warning : forecast.warnings)
     std::printf("warning: %s\n", printable(warning, 4000).c_str());
-  const std::size_t warnings = outlook.warnings.size();
+  const std::size_t warnings = forecast.warnings.size();
   const std::string warned = ", " + counted(warnings, "warning");
   std::printf("%s: %s, %s, %s of %g s: no errors%s\n", printable(scenario.path).c_str(),
-              counted(outlook.objects, "object").c_str(),
+              counted(forecast.objects, "object").c_str(),
               counted(scenario.sensors.size(), "sensor").c_str(),
               counted(std::size_t(scenario.last_tick()), "tick").c_str(), scenario.tick.seconds(),
               warnings > 0 ? warned.c_str() : "");
 }
 
-void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const Clock& clock,
+void print_json(const Scenario& scenario, const ScenarioForecast& forecast, const Clock& clock,
                 bool has_stars) {
   JsonWriter json;
   json.begin_object().field("scenario", printable(scenario.path));
@@ -206,13 +206,13 @@ void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const 
   // Divided, so that 60 s are 60.
   json.field("duration_s", double(scenario.duration.ns) / 1e9);
   json.field("tick_s", double(scenario.tick.ns) / 1e9);
-  json.field("objects", outlook.objects);
+  json.field("objects", forecast.objects);
   json.key("sensors").begin_array();
-  for (const auto& sensor : outlook.sensors) write_json(json, sensor, clock);
+  for (const auto& sensor : forecast.sensors) write_json(json, sensor, clock);
   json.end_array();
   write_effects(json, scenario, has_stars);
   for (const auto& [key, lines] :
-       {std::pair{"notes", &outlook.notes}, std::pair{"warnings", &outlook.warnings}}) {
+       {std::pair{"notes", &forecast.notes}, std::pair{"warnings", &forecast.warnings}}) {
     json.key(key).begin_array();
     for (const auto& line : *lines) json.value(printable(line, 4000));
     json.end_array();
@@ -227,35 +227,39 @@ void check(const CheckOptions& options) {
   const Clock clock = make_clock(scenario);
   const ScenarioInputs scene = load_scene(scenario, clock);
   make_sensors(scenario, scene.stars);
-  const auto outlook =
-      scenario_outlook(scenario, scene, clock, {.min_limb_angle_rad = options.limb_deg * deg});
+  const auto forecast =
+      scenario_forecast(scenario, scene, clock, {.min_limb_angle_rad = options.limb_deg * deg});
   if (options.json)
-    print_json(scenario, outlook, clock, scene.stars != nullptr);
+    print_json(scenario, forecast, clock, scene.stars != nullptr);
   else
-    print_text(scenario, outlook, scene.stars != nullptr);
+    print_text(scenario, forecast, scene.stars != nullptr);
+}
+
+void add_check_options(CLI::App& command) {
+  auto options = std::make_shared<CheckOptions>();
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_flag("--json", options->json, "print one JSON object");
+  command.add_option("--out", options->out, "also check that products can be written there");
+  auto* keys =
+      command.add_option("--keys", options->keys,
+                         "also check that this directory has the key of every process of a launch");
+  command
+      .add_option("--hosts", options->hosts,
+                  "with --keys: also of this number of agents, as in a launch")
+      ->default_val(0)
+      ->check(CLI::Range(0, 10000))
+      ->needs(keys);
+  add_number_option(command, "--limb-deg", options->limb_deg, 0.0, 180.0,
+                    "warn of cameras in orbit that point nearer to the Earth's limb");
+  command.callback([options] { check(*options); });
 }
 
 }  // namespace
 
-void add_check_command(CLI::App& app) {
-  auto options = std::make_shared<CheckOptions>();
-  auto* command = app.add_subcommand(
-      "check", "Reads a scenario and its files, reports what each sensor will see, and warns");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_flag("--json", options->json, "print one JSON object");
-  command->add_option("--out", options->out, "also check that products can be written there");
-  auto* keys = command->add_option(
-      "--keys", options->keys,
-      "also check that this directory has the key of every process of a launch");
-  command
-      ->add_option("--hosts", options->hosts,
-                   "with --keys: also of this number of agents, as in a launch")
-      ->default_val(0)
-      ->check(CLI::Range(0, 10000))
-      ->needs(keys);
-  add_number_option(*command, "--limb-deg", options->limb_deg, 0.0, 180.0,
-                    "warn of cameras in orbit that point nearer to the Earth's limb");
-  command->callback([options] { check(*options); });
+Command check_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary = "Reads a scenario and its files, reports what each sensor will see, and warns",
+          .add_options = add_check_options};
 }
 
 }  // namespace dmise

@@ -15,7 +15,7 @@
 #include "core/conjunction/close_approaches.h"
 #include "core/orbit/elements/catalogue.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
 
@@ -108,33 +108,37 @@ void find_conjunctions(const ConjunctionOptions& options) {
   if (found.empty()) print_note("no approach below this distance");
 }
 
-}  // namespace
-
-void add_conjunctions_command(CLI::App& app) {
+void add_conjunctions_options(CLI::App& command) {
   auto options = std::make_shared<ConjunctionOptions>();
-  auto* command = app.add_subcommand(
-      "conjunctions",
-      "Close approaches of objects of a catalogue, with probabilities of collision");
-  command->add_option("file", options->path, "TLE, 3LE, gpredict or OMM (JSON, CSV, XML, KVN)")
+  command.add_option("file", options->path, "TLE, 3LE, gpredict or OMM (JSON, CSV, XML, KVN)")
       ->required();
   command
-      ->add_option("--object", options->objects,
-                   "name or number of an object whose approaches are wanted; several")
+      .add_option("--object", options->objects,
+                  "name or number of an object whose approaches are wanted; several")
       ->required();
-  command->add_option("--start", options->start, "UTC such as 2018-01-21T00:00:00Z")->required();
-  command->add_option("--hours", options->hours, "duration [h]")
+  command.add_option("--start", options->start, "UTC such as 2018-01-21T00:00:00Z")->required();
+  command.add_option("--hours", options->hours, "duration [h]")
       ->capture_default_str()
       ->check(number_between(0.01, 720.0));
-  command->add_option("--within-km", options->within_km, "largest distance that is told [km]")
+  command.add_option("--within-km", options->within_km, "largest distance that is told [km]")
       ->capture_default_str()
       ->check(number_between(0.001, 1000.0));
-  command->add_option("--radius-m", options->radius_m, "sum of the radii of both objects [m]")
+  command.add_option("--radius-m", options->radius_m, "sum of the radii of both objects [m]")
       ->capture_default_str()
       ->check(number_between(0.001, 1000.0));
-  command->add_option("--cdm", options->cdm,
-                      "directory for Conjunction Data Messages (CCSDS 508.0, KVN)");
-  command->add_flag("--json", options->json, "a JSON object a line");
-  command->callback([options] { find_conjunctions(*options); });
+  command.add_option("--cdm", options->cdm,
+                     "directory for Conjunction Data Messages (CCSDS 508.0, KVN)");
+  command.add_flag("--json", options->json, "a JSON object a line");
+  command.callback([options] { find_conjunctions(*options); });
+}
+
+}  // namespace
+
+Command conjunctions_command() {
+  return {
+      .group = CommandGroup::predictions,
+      .summary = "Finds close approaches of objects of a catalogue, and probabilities of collision",
+      .add_options = add_conjunctions_options};
 }
 
 }  // namespace dmise

@@ -17,10 +17,10 @@
 #include "core/config/scenario.h"
 #include "core/plan/plan_json.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
-#include "launch/run/scenario_outlook.h"
-#include "sensors/outlook/outlook_text.h"
-#include "sensors/outlook/plan_outlook.h"
+#include "launch/command/command.h"
+#include "launch/run/scenario_forecast.h"
+#include "sensors/forecast/forecast_text.h"
+#include "sensors/forecast/plan_forecast.h"
 
 namespace dmise {
 namespace {
@@ -135,13 +135,13 @@ void explain(const ExplainOptions& options) {
   json.begin_object().field("scenario", printable(scenario.path)).key("sensors").begin_array();
   for (const auto& sensor : scenario.sensors) {
     if (!options.sensor.empty() && sensor.name != options.sensor) continue;
-    const auto spans = plan_outlook(scenario, sensor, scene.population, clock, scene.stars.get(),
-                                    threads, options.frames);
-    const SensorOutlook outlook = sensor_outlook(scenario, sensor, scene.population, clock,
-                                                 scene.stars, threads, {.max_frames = 0});
+    const auto spans = plan_forecast(scenario, sensor, scene.population, clock, scene.stars.get(),
+                                     threads, options.frames);
+    const SensorForecast forecast = sensor_forecast(scenario, sensor, scene.population, clock,
+                                                    scene.stars, threads, {.max_frames = 0});
     if (options.json) {
       json.begin_object().field("sensor", sensor.name).field("accuracy", sensor.accuracy.name);
-      if (outlook.mid_run) json.field("limiting_magnitude", outlook.mid_run->point_limit_v_mag);
+      if (forecast.mid_run) json.field("limiting_magnitude", forecast.mid_run->point_limit_v_mag);
       json.key("spans").begin_array();
       for (const auto& span : spans) {
         json.begin_object().field("first_frame", span.first_frame);
@@ -158,7 +158,7 @@ void explain(const ExplainOptions& options) {
     explained.push_back({sensor.name,
                          sensor.accuracy.is_planned() ? "accuracy: " + sensor.accuracy.name
                                                       : "not planned (accuracy: off)",
-                         limiting_magnitude_text(outlook), spans});
+                         limiting_magnitude_text(forecast), spans});
     print_plans(explained.back(), factors);
     if (options.all)
       for (const auto& span : spans) print_span(span, clock, factors);
@@ -176,22 +176,25 @@ void explain(const ExplainOptions& options) {
   if (options.json) std::printf("%s\n", json.take().c_str());
 }
 
-}  // namespace
-
-void add_explain_command(CLI::App& app) {
+void add_explain_options(CLI::App& command) {
   auto options = std::make_shared<ExplainOptions>();
-  auto* command = app.add_subcommand(
-      "explain",
-      "Shows at which level each effect runs in a sensor's frames, why, and what it costs");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--sensor", options->sensor, "only this sensor");
-  command->add_option("--frames", options->frames, "plan at most this many frames of each sensor")
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_option("--sensor", options->sensor, "only this sensor");
+  command.add_option("--frames", options->frames, "plan at most this many frames of each sensor")
       ->default_val(16)
       ->check(CLI::Range(1, 100000));
-  command->add_flag("--all", options->all,
-                    "each plan, with cost, error and reason of every effect");
-  command->add_flag("--json", options->json, "print one JSON object");
-  command->callback([options] { explain(*options); });
+  command.add_flag("--all", options->all, "each plan, with cost, error and reason of every effect");
+  command.add_flag("--json", options->json, "print one JSON object");
+  command.callback([options] { explain(*options); });
+}
+
+}  // namespace
+
+Command explain_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary =
+              "Shows at which level each effect runs in a sensor's frames, why, and what it costs",
+          .add_options = add_explain_options};
 }
 
 }  // namespace dmise

@@ -17,7 +17,7 @@
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
 #include "core/photometry/band.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 
 namespace dmise {
 namespace {
@@ -99,13 +99,8 @@ void list_catalogues() {
 
 void list_effects() { std::printf("%s", effects_markdown().c_str()); }
 
-}  // namespace
-
-void add_list_command(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "list",
-      "Names for scenarios: cameras, sites, filters, materials, models, catalogues, effects");
-  command->require_subcommand(1);
+void add_list_options(CLI::App& command) {
+  command.require_subcommand(1);
   const std::map<std::string, std::pair<std::string, void (*)()>> kinds{
       {"cameras", {"for sensors[].camera", list_cameras}},
       {"sites", {"for sensors[].site", list_sites}},
@@ -115,7 +110,15 @@ void add_list_command(CLI::App& app) {
       {"catalogues", {"for objects[].catalogue and stars.catalogue", list_catalogues}},
       {"effects", {"for effects, as a table in Markdown", list_effects}}};
   for (const auto& [name, kind] : kinds)
-    command->add_subcommand(name, kind.first)->callback(kind.second);
+    command.add_subcommand(name, kind.first)->callback(kind.second);
+}
+
+}  // namespace
+
+Command list_command() {
+  return {.group = CommandGroup::scenarios,
+          .summary = "Lists names: cameras, sites, filters, materials, models, catalogues, effects",
+          .add_options = add_list_options};
 }
 
 }  // namespace dmise

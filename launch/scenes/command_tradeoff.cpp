@@ -11,7 +11,7 @@
 #include "core/base/files/whole_file.h"
 #include "core/base/printable.h"
 #include "core/base/version.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/notes.h"
 #include "launch/process/run_lock.h"
 #include "launch/run/progress.h"
@@ -89,27 +89,32 @@ void tradeoff(const TradeoffOptions& options) {
   std::printf("%s/index.html: %zu rows\n", options.out.c_str(), rows.size());
 }
 
-}  // namespace
-
-void add_tradeoff_command(CLI::App& app) {
+void add_tradeoff_options(CLI::App& command) {
   auto options = std::make_shared<TradeoffOptions>();
-  auto* command = app.add_subcommand(
-      "tradeoff",
-      "Measures what each level of each effect, and plans for a set of budgets, cost in accuracy "
-      "and save in time against the reference of one frame; CSV, JSON, charts and a page. Goes on "
-      "where it was stopped");
-  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--sensor", options->sensor,
-                      "name of the sensor; default: the first of the scenario");
-  command->add_option("--frame", options->frame, "number of the exposure")
+  command.add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command.add_option("--sensor", options->sensor,
+                     "name of the sensor; default: the first of the scenario");
+  command.add_option("--frame", options->frame, "number of the exposure")
       ->default_val(1)
       ->check(CLI::Range(1u, 1000000u));
-  command->add_option("--repeats", options->repeats, "frames of each kind that are timed, in turns")
+  command.add_option("--repeats", options->repeats, "frames of each kind that are timed, in turns")
       ->default_val(3)
       ->check(CLI::Range(1, 1000));
-  command->add_option("--out", options->out, "directory of the products")
+  command.add_option("--out", options->out, "directory of the products")
       ->default_val("out/tradeoff");
-  command->callback([options] { tradeoff(*options); });
+  command.callback([options] { tradeoff(*options); });
+}
+
+}  // namespace
+
+Command tradeoff_command() {
+  return {.group = CommandGroup::accuracy,
+          .summary =
+              "Measures what levels of effects cost and lack, against the reference of one frame",
+          .details =
+              "Of each level of each effect, and of plans for a set of budgets; CSV, JSON, charts "
+              "and a page. Goes on where it was stopped",
+          .add_options = add_tradeoff_options};
 }
 
 }  // namespace dmise

@@ -16,7 +16,7 @@
 #include "core/config/make_clock.h"
 #include "core/sky/places/sun_moon.h"
 #include "core/time/iso8601.h"
-#include "launch/command/commands.h"
+#include "launch/command/command.h"
 #include "launch/command/common_options.h"
 #include "launch/command/notes.h"
 #include "launch/process/run_lock.h"
@@ -222,51 +222,55 @@ void visible(const VisibleOptions& options) {
   }
 }
 
-}  // namespace
-
-void add_visible_command(CLI::App& app) {
+void add_visible_options(CLI::App& command) {
   auto o = std::make_shared<VisibleOptions>();
-  auto* command = app.add_subcommand(
-      "visible",
-      "Lists passes of objects through the sensors' fields: times, ranges, illumination");
-  command->add_option("scenario", o->scenario, "scenario (YAML)")->required();
-  command->add_option("--sensor", o->sensors, "only this sensor (may be repeated)")
+  command.add_option("scenario", o->scenario, "scenario (YAML)")->required();
+  command.add_option("--sensor", o->sensors, "only this sensor (may be repeated)")
       ->allow_extra_args(false);
-  command->add_option("--from", o->from, "UTC (ISO 8601); default: the scenario's start");
-  command->add_option("--duration", o->duration_s, "seconds; default: the scenario's")
+  command.add_option("--from", o->from, "UTC (ISO 8601); default: the scenario's start");
+  command.add_option("--duration", o->duration_s, "seconds; default: the scenario's")
       ->check(number_between(1e-3, 3.2e8));
-  add_number_option(*command, "--step", o->step_s, 1e-3, 3600.0,
+  add_number_option(command, "--step", o->step_s, 1e-3, 3600.0,
                     "seconds between the instants of the figure, the last of them the span's end; "
                     "passes do not depend on it");
-  auto* sunlit = command->add_flag("--sunlit", o->sunlit, "only passes that are partly sunlit");
+  auto* sunlit = command.add_flag("--sunlit", o->sunlit, "only passes that are partly sunlit");
   command
-      ->add_flag("--dark", o->dark,
-                 "only passes that are partly in the Earth's shadow; the figure shows that part")
+      .add_flag("--dark", o->dark,
+                "only passes that are partly in the Earth's shadow; the figure shows that part")
       ->excludes(sunlit);
   command
-      ->add_option("--night", o->night_deg,
-                   "only passes during which, for a part, the Sun is below this elevation at the "
-                   "site [deg]; -6 without a value; passes in orbit are all kept")
+      .add_option("--night", o->night_deg,
+                  "only passes during which, for a part, the Sun is below this elevation at the "
+                  "site [deg]; -6 without a value; passes in orbit are all kept")
       ->expected(0, 1)
       ->default_str("-6")
       ->check(number_between(-90.0, 90.0));
-  command->add_option("--rows", o->rows, "number of passes in the table; 0: all")
+  command.add_option("--rows", o->rows, "number of passes in the table; 0: all")
       ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
-  auto* csv = command->add_flag("--csv", o->csv, "print CSV instead of the table");
-  command->add_flag("--jsonl", o->jsonl, "print one JSON object per line instead of the table")
+  auto* csv = command.add_flag("--csv", o->csv, "print CSV instead of the table");
+  command.add_flag("--jsonl", o->jsonl, "print one JSON object per line instead of the table")
       ->excludes(csv);
   command
-      ->add_option("--out", o->out,
-                   "directory of passes.csv, passes.jsonl, counts.csv, figure.svg and .png")
+      .add_option("--out", o->out,
+                  "directory of passes.csv, passes.jsonl, counts.csv, figure.svg and .png")
       ->capture_default_str();
-  command->add_flag("--print-only", o->print_only, "write no files");
-  add_threads_option(*command, o->threads, "number of threads; the products do not depend on it");
-  command->footer(
+  command.add_flag("--print-only", o->print_only, "write no files");
+  add_threads_option(command, o->threads, "number of threads; the products do not depend on it");
+  command.footer(
       "An object is visible if it is in the camera's frame, above the sensor's mask_deg and "
       "not behind\nthe Earth, and the shutter is open; '<' and '>' mark passes cut by the span. "
       "docs/models/visibility.md");
-  command->callback([o] { visible(*o); });
+  command.callback([o] { visible(*o); });
+}
+
+}  // namespace
+
+Command visible_command() {
+  return {
+      .group = CommandGroup::predictions,
+      .summary = "Lists passes of objects through the sensors' fields: times, ranges, illumination",
+      .add_options = add_visible_options};
 }
 
 }  // namespace dmise

@@ -8,7 +8,7 @@
 #include "core/base/units.h"
 #include "core/orbit/sgp4/catalogue_report.h"
 #include "core/time/iso8601.h"
-#include "sensors/outlook/camera_figures.h"
+#include "sensors/forecast/camera_figures.h"
 
 namespace dmise {
 namespace {

@@ -18,10 +18,7 @@ std::string to_json(std::string_view type, std::string_view text) {
 class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(Hub& hub, beast::tcp_stream stream, Access access)
-      : hub_(hub), socket_(std::move(stream)), access_(access) {
-    hub_.connections.add(this);
-  }
-  ~Viewer() override { hub_.connections.remove(this); }
+      : Connection(hub.connections), hub_(hub), socket_(std::move(stream)), access_(access) {}
 
   void accept(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-// What the connections of web servers share. Boost.Beast is slow to compile: only files of
+// What the connections of servers share. Boost.Beast is slow to compile: only files of
 // connections include this.
 namespace dmise {
 
@@ -20,14 +20,24 @@ namespace http = beast::http;
 using boost::system::error_code;
 using tcp = boost::asio::ip::tcp;
 
+class Connections;
+
+/// A client, which is among the connections of its server as long as it is there.
 class Connection {
  public:
-  virtual ~Connection() = default;
+  explicit Connection(Connections& all);
+  virtual ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
   /// Called when there may be new messages.
   virtual void pump() {}
   /// The client's address while it has not yet asked for anything with access to it; else "".
   virtual std::string stranger() const { return {}; }
   virtual void close() {}
+
+ private:
+  Connections& all_;
 };
 
 /// Passes work from any thread to the server's thread, as long as there is a server.
@@ -62,6 +72,29 @@ class Connections {
 
  private:
   std::vector<Connection*> all_;
+};
+
+inline Connection::Connection(Connections& all) : all_(all) { all_.add(this); }
+inline Connection::~Connection() { all_.remove(this); }
+
+/// A connection over a socket of its own.
+class SocketConnection : public Connection {
+ public:
+  SocketConnection(Connections& all, tcp::socket socket)
+      : Connection(all), stream_(std::move(socket)) {
+    error_code ignored;
+    address_ = stream_.socket().remote_endpoint(ignored).address().to_string();
+  }
+  std::string stranger() const override { return has_access() ? "" : address_; }
+  void close() override { stream_.close(); }
+
+ protected:
+  virtual bool has_access() const = 0;
+
+  beast::tcp_stream stream_;
+
+ private:
+  std::string address_;  // of the client
 };
 
 inline std::chrono::milliseconds milliseconds_of(double seconds) {

@@ -103,7 +103,7 @@ RenderedCheck check_rendered(const SurveyScene& scene, std::size_t count, FrameH
     std::vector<std::uint32_t> frames;
     for (std::size_t k = 0; k < wanted; ++k)
       frames.push_back(all[std::size_t((double(k) + 0.5) * double(all.size()) / double(wanted))]);
-    const SensorForecast looks(scene, *sensor);
+    const ExposureForecaster looks(scene, *sensor);
     const auto objects = objects_by_frame(scene, *sensor, frames, threads);
     const WorldSource worlds(scenario, *sensor, scene.clock());
     FramePipeline pipeline(sensor_settings(scenario, sensor->name, ""), scene.stars(), threads);

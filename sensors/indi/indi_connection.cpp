@@ -14,21 +14,14 @@
 namespace dmise {
 
 /// One client. What it is sent waits in a queue of texts that clients share.
-class IndiConnection : public Connection, public std::enable_shared_from_this<IndiConnection> {
+class IndiConnection : public SocketConnection,
+                       public std::enable_shared_from_this<IndiConnection> {
  public:
-  IndiConnection(IndiHub& hub, tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
-    error_code ignored;
-    address_ = stream_.socket().remote_endpoint(ignored).address().to_string();
-    hub_.connections.add(this);
+  IndiConnection(IndiHub& hub, tcp::socket socket)
+      : SocketConnection(hub.connections, std::move(socket)), hub_(hub) {
     hub_.clients.push_back(this);
   }
-  ~IndiConnection() override {
-    hub_.connections.remove(this);
-    std::erase(hub_.clients, this);
-  }
-
-  std::string stranger() const override { return interest_.has_asked() ? "" : address_; }
-  void close() override { stream_.close(); }
+  ~IndiConnection() override { std::erase(hub_.clients, this); }
 
   void read() {
     if (ends_ || waiting_bytes_ > hub_.options.max_unanswered_bytes) return;
@@ -59,6 +52,8 @@ class IndiConnection : public Connection, public std::enable_shared_from_this<In
   void send(std::string text) { send(std::make_shared<const std::string>(std::move(text))); }
 
  private:
+  bool has_access() const override { return interest_.has_asked(); }
+
   IndiRemark remark(const std::string& message) const {
     return {hub_.observatory.utc(hub_.observatory.now()), printable(message)};
   }
@@ -123,8 +118,6 @@ class IndiConnection : public Connection, public std::enable_shared_from_this<In
   }
 
   IndiHub& hub_;
-  beast::tcp_stream stream_;
-  std::string address_;  // where the client is
   std::array<char, 16 << 10> bytes_{};
   IndiStream stream_text_;
   IndiInterest interest_;

@@ -11,10 +11,10 @@
 #include "core/optics/projection.h"
 #include "core/score/matched_filter.h"
 #include "core/sky/air/airmass.h"
+#include "sensors/forecast/detection_limit.h"
 #include "sensors/objects/object_sampler.h"
 #include "sensors/objects/objects_in_field.h"
 #include "sensors/objects/world_source.h"
-#include "sensors/outlook/detection_limit.h"
 #include "sensors/sky/field_stars.h"
 #include "sensors/sky/sky_light.h"
 #include "sensors/sky/thermal_optics.h"
@@ -53,7 +53,7 @@ void compare_with_star(ExpectedDetection& look, const std::vector<ObjectSample>&
 
 }  // namespace
 
-SensorForecast::SensorForecast(const SurveyScene& scene, const SensorConfig& sensor)
+ExposureForecaster::ExposureForecaster(const SurveyScene& scene, const SensorConfig& sensor)
     : scene_(scene),
       sensor_(sensor),
       shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects,
@@ -69,8 +69,8 @@ SensorForecast::SensorForecast(const SurveyScene& scene, const SensorConfig& sen
     mask_sine_ = std::sin(sensor.mask_deg * deg);
 }
 
-std::optional<ExposureForecast> SensorForecast::of(const FrameTimes& commanded,
-                                                   std::span<const std::uint32_t> objects) const {
+std::optional<ExposureForecast> ExposureForecaster::of(
+    const FrameTimes& commanded, std::span<const std::uint32_t> objects) const {
   ExposureForecast out;
   std::vector<std::uint32_t> all(objects.begin(), objects.end());
   all.insert(all.end(), needed_.begin(), needed_.end());

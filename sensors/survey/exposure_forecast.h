@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/sky/faint_starlight.h"
+#include "sensors/forecast/detection_limit.h"
 #include "sensors/objects/object_shapes.h"
-#include "sensors/outlook/detection_limit.h"
 #include "sensors/scene/frame_times.h"
 #include "sensors/survey/noise_table.h"
 #include "sensors/survey/survey_scene.h"
@@ -43,11 +43,11 @@ struct ExposureForecast {
 /// What is expected in the exposures of one sensor: by the same states, directions, light, sky and
 /// noise as its frames have (`ObjectSampler`, `SkyModel`, `expected_noise`), at three instants of
 /// an exposure. Calls are const and may run concurrently.
-class SensorForecast {
+class ExposureForecaster {
  public:
   /// Both must outlive it. Throws `ConfigError` for a platform or target that is not in the
   /// population.
-  SensorForecast(const SurveyScene& scene, const SensorConfig& sensor);
+  ExposureForecaster(const SurveyScene& scene, const SensorConfig& sensor);
 
   /// Looks at `objects`, ascending indices. Nothing if the platform or the target has no state.
   std::optional<ExposureForecast> of(const FrameTimes& commanded,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sensors/outlook/detection_limit.h"
+#include "sensors/forecast/detection_limit.h"
 
 namespace dmise {
 namespace {

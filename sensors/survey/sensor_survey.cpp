@@ -146,7 +146,7 @@ SensorSurvey survey_sensor(const SurveyScene& scene, const SensorConfig& sensor,
                            const Shells& shells, Threads& threads, const SurveyOptions& options) {
   SensorSurvey survey{.sensor = sensor.name,
                       .frames = frames_within(sensor, scene.scenario().duration)};
-  const SensorForecast looks(scene, sensor);
+  const ExposureForecaster looks(scene, sensor);
   std::vector<SurveyExposure> exposures;
   std::vector<std::uint32_t> frames;
   for (std::uint32_t frame = 1; frame <= survey.frames; ++frame) {

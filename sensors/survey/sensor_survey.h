@@ -78,7 +78,7 @@ bool is_surveyed(const SurveyScene& scene, const SensorConfig& sensor, std::uint
                  const SurveyOptions& options);
 
 /// Surveys all exposures of a sensor that end within the run. Equal for any number of threads.
-/// Throws what `SensorForecast` throws.
+/// Throws what `ExposureForecaster` throws.
 SensorSurvey survey_sensor(const SurveyScene& scene, const SensorConfig& sensor,
                            const Shells& shells, Threads& threads,
                            const SurveyOptions& options = {});

@@ -1,4 +1,4 @@
-#include "core/base/numeric/banded_matrix.h"
+#include "core/base/algebra/banded_matrix.h"
 
 #include <gtest/gtest.h>
 

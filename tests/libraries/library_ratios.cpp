@@ -23,10 +23,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/algebra/least_squares.h"
 #include "core/base/error.h"
 #include "core/base/files/crc32c.h"
 #include "core/base/files/json.h"
-#include "core/base/numeric/least_squares.h"
 #include "core/base/numeric/rng.h"
 #include "core/detector/noise/poisson.h"
 #include "core/image/fits_cards.h"

@@ -1,4 +1,4 @@
-#include "sensors/outlook/frame_outlook.h"
+#include "sensors/forecast/frame_forecast.h"
 #include "tests/pipeline/shape_scenes.h"
 
 // Tables of GalSim, made by tests/reference/range_defocus.py.

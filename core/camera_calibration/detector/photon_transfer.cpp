@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/algebra/two_unknowns.h"
 #include "core/base/numeric/chi_square.h"
 
 namespace dmise {
@@ -20,24 +21,6 @@ double noise_per_signal(const FlatPair& pair, double floor_variance) {
     signal += double(tile.signal);
   }
   return signal > 0 ? variance / signal : 0.0;
-}
-
-/// Least squares of two unknowns: sums of {aa, ab, bb, ay, by} by weight.
-using TwoSums = StripSums<5>;
-
-void add_row(double a, double b, double y, double weight, TwoSums& s) {
-  s[0] += weight * a * a;
-  s[1] += weight * a * b;
-  s[2] += weight * b * b;
-  s[3] += weight * a * y;
-  s[4] += weight * b * y;
-}
-
-/// First and second unknown; the second is 0 if it is not free.
-std::array<double, 2> solution_of(const TwoSums& s, bool second_free) {
-  if (!second_free) return {s[3] / s[0], 0.0};
-  const double det = s[0] * s[2] - s[1] * s[1];
-  return {(s[2] * s[3] - s[1] * s[4]) / det, (s[0] * s[4] - s[1] * s[3]) / det};
 }
 
 TwoSums total_of_strips(const std::vector<TwoSums>& strips) {
@@ -165,7 +148,7 @@ Linearity measure_linearity(const FlatTiles& flats, const Tiles& tiles,
       add_row(time, time * time, double(flats.tiles[f][t].mean), 1 / time, fit);
     }
     if (!held) continue;
-    const auto [p, q] = solution_of(fit, true);
+    const auto [p, q] = solution_of(fit);
     auto& s = strips[tiles.strip_of(t)];
     s[0] += p * p * p * p;
     s[1] -= q * p * p;

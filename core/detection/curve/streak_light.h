@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/numeric/banded_matrix.h"
+#include "core/base/algebra/banded_matrix.h"
 #include "core/detection/source/scene.h"
 
 namespace dmise {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <span>
 
+#include "core/base/algebra/small_matrix.h"
 #include "core/base/units.h"
 #include "core/detection/light/aperture_light.h"
-#include "core/detection/pixels/small_matrix.h"
 
 namespace dmise {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "core/base/algebra/small_matrix.h"
 #include "core/detection/light/psf_growth.h"
-#include "core/detection/pixels/small_matrix.h"
 
 namespace dmise {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detection/pixels/small_matrix.h"
+#include "core/base/algebra/small_matrix.h"
 
 namespace dmise {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/algebra/small_matrix.h"
 #include "core/base/error.h"
 #include "core/base/numeric/simd_level.h"
 #include "core/detection/light/trail_kernels.h"
-#include "core/detection/pixels/small_matrix.h"
 
 namespace dmise {
 namespace {

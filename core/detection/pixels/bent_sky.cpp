@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/algebra/small_matrix.h"
 #include "core/base/numeric/quantile.h"
-#include "core/detection/pixels/small_matrix.h"
 
 namespace dmise {
 namespace {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
 
@@ -17,6 +18,26 @@ constexpr double dark_share = 0.25;  // light that a gap may have, over the stre
 constexpr double dark_sigmas = 5.0;  // shorter gaps, in units of the PSF, may be the detector's
 
 }  // namespace
+
+Line principal_axis(const std::vector<Point>& points, const Line& line, double width_px) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (const Point& p : points) {
+    if (std::abs(line.off(p)) > width_px) continue;
+    const double dx = p.x - line.x, dy = p.y - line.y;
+    const double w = p.weight;
+    n += w;
+    x += w * dx;
+    y += w * dy;
+    xx += w * dx * dx;
+    xy += w * dx * dy;
+    yy += w * dy * dy;
+  }
+  if (!(n > 0)) return line;
+  x /= n;
+  y /= n;
+  const double angle = axis_angle_rad({xx / n - x * x, xy / n - x * y, yy / n - y * y});
+  return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
+}
 
 Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px) {
   const Point centre = line.at(major, offset_px);

@@ -47,6 +47,9 @@ inline Line line_of(const Trail& t) {
           std::max(t.length_px / 2, 1.0)};
 }
 
+/// Principal axis of the points within `width_px` of a line; the line if there are none.
+Line principal_axis(const std::vector<Point>& points, const Line& line, double width_px);
+
 /// Extent of a streak along its line's major axis.
 struct Extent {
   int from, to;

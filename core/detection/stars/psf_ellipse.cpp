@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/detection/pixels/small_matrix.h"
+#include "core/base/algebra/small_matrix.h"
 #include "core/detection/source/source_fit.h"
 
 namespace dmise {

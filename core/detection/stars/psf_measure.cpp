@@ -4,10 +4,10 @@
 #include <cmath>
 #include <span>
 
+#include "core/base/algebra/small_matrix.h"
 #include "core/base/numeric/quantile.h"
 #include "core/detection/light/psf_shape.h"
 #include "core/detection/light/psf_star_fit.h"
-#include "core/detection/pixels/small_matrix.h"
 #include "core/detection/source/source_fit.h"
 #include "core/detection/stars/psf_ellipse.h"
 #include "core/detection/stars/psf_stars.h"

@@ -6,10 +6,10 @@
 #include <compare>
 #include <cstdint>
 
+#include "core/base/algebra/small_matrix.h"
 #include "core/base/numeric/simd_level.h"
 #include "core/detection/light/star_image.h"
 #include "core/detection/pixels/components.h"
-#include "core/detection/pixels/small_matrix.h"
 
 namespace dmise {
 namespace {

@@ -13,21 +13,6 @@ constexpr int max_half_px = 32;        // half of the profile across a line
 constexpr double min_broadness = 1.3;  // to the width of the PSF
 constexpr double min_pixel_snr = 4.0;
 
-/// Principal axis of the points within `half_px` of a line.
-Line axis_of(const std::vector<Point>& points, const Line& line, double half_px) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  for (const Point& p : points) {
-    if (std::abs(line.off(p)) > half_px) continue;
-    const double dx = p.x - line.x, dy = p.y - line.y;
-    n += p.weight, x += p.weight * dx, y += p.weight * dy;
-    xx += p.weight * dx * dx, xy += p.weight * dx * dy, yy += p.weight * dy * dy;
-  }
-  if (!(n > 0)) return line;
-  x /= n, y /= n;
-  const double angle = 0.5 * std::atan2(2 * (xy / n - x * y), xx / n - x * x - (yy / n - y * y));
-  return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
-}
-
 Extent extent_on(const std::vector<Point>& points, const Line& line, double half_px) {
   Extent extent{1, 0};
   for (const Point& p : points) {
@@ -155,7 +140,7 @@ std::optional<BroadLine> broad_line(const Scene& scene, const std::vector<Point>
   BroadLine broad{.line = rough, .extent = {1, 0}};
   double half_px = 4 * fwhm_px;
   for (int round = 0; round < rounds; ++round) {
-    broad.line = axis_of(points, broad.line, half_px);
+    broad.line = principal_axis(points, broad.line, half_px);
     broad.extent = extent_on(points, broad.line, half_px);
     if (broad.extent.to <= broad.extent.from) return std::nullopt;
     const auto profile = profile_across(scene, broad.line, broad.extent);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/units.h"
 #include "core/detection/pixels/detection_limits.h"
 #include "core/detection/source/source_fit.h"
@@ -55,7 +56,9 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
   if (!(f > 0)) return {};
   x /= f;
   y /= f;
-  double xx = 0, xy = 0, yy = 0, total = 0;
+  Symmetric2 spread{};
+  auto& [xx, xy, yy] = spread;
+  double total = 0;
   for (const auto& p : pixels) {
     const double w = std::max(p.signal_e, 0.0f) / f, dx = p.x - x, dy = p.y - y;
     xx += w * dx * dx;
@@ -63,12 +66,12 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
     yy += w * dy * dy;
     total += p.signal_e;
   }
-  const double major = 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
+  const double major = mean_of_axes(spread) + half_of_axes(spread);
   return {.x_px = x,
           .y_px = y,
           .flux_e = std::max(total, 1.0),
           .length_px = std::sqrt(12 * std::max(major - sigma_px * sigma_px, 0.1)),
-          .angle_rad = 0.5 * std::atan2(2 * xy, xx - yy)};
+          .angle_rad = axis_angle_rad(spread)};
 }
 
 /// Relative error of the PSF outside `clipped` pixels.

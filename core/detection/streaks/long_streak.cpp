@@ -93,27 +93,6 @@ std::optional<Line> main_line(const std::vector<Point>& points, double width_px,
   return best;
 }
 
-/// Principal axis of the points within `width_px` of the line.
-Line refined(const std::vector<Point>& points, const Line& line, double width_px) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  for (const Point& p : points) {
-    if (std::abs(line.off(p)) > width_px) continue;
-    const double dx = p.x - line.x, dy = p.y - line.y;
-    const double w = p.weight;
-    n += w;
-    x += w * dx;
-    y += w * dy;
-    xx += w * dx * dx;
-    xy += w * dx * dy;
-    yy += w * dy * dy;
-  }
-  if (!(n > 0)) return line;
-  x /= n;
-  y /= n;
-  const double angle = 0.5 * std::atan2(2 * (xy / n - x * y), xx / n - x * x - (yy / n - y * y));
-  return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
-}
-
 /// Extends the line beyond one end while light of about the same level continues, one window at a
 /// time. `across_gaps`: also across one window, which may be dark by noise alone.
 void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level,
@@ -370,8 +349,8 @@ void find_long_streaks(const Scene& scene, const Component& component, std::vect
   for (int n = 0; n < max_lines && points.size() >= 2 * std::size_t(min_px); ++n) {
     const auto rough = main_line(points, width_px, min_px);
     if (!rough) break;
-    Line line = refined(points, *rough, 2 * width_px);
-    line = refined(points, line, width_px);
+    Line line = principal_axis(points, *rough, 2 * width_px);
+    line = principal_axis(points, line, width_px);
     std::vector<double> on;
     for (const Point& p : points)
       if (std::abs(line.off(p)) < width_px) on.push_back(line.major(p));
