@@ -46,7 +46,7 @@ void weigh(std::vector<OffLine>& stars, double scatter2) {
   }
 }
 
-/// Of the zero point and the colour term.
+/// The sums by which zero point and colour term are fitted.
 TwoSums sums_of(const StarZeroPoint& star, double weight) {
   return row_of(1.0, star.bv - ZeroPoint::sunlike_bv, star.mag, weight);
 }

@@ -23,7 +23,7 @@ constexpr double min_seen_snr = 0.5;       // that a frame of a track must add t
 
 /// How a point's SNR falls off around its place, and how noise slopes there.
 struct Response {
-  Symmetric2 curvature{};  // of a point of SNR 1 [1/px2]
+  Symmetric2 curvature{};  // for a point of SNR 1 [1/px2]
   double slope_variance = 0.0;
 };
 
@@ -114,7 +114,7 @@ std::vector<SnrAt> seen_by(const std::vector<MovingLight>& light,
   return seen;
 }
 
-/// Of a symmetric matrix in a frame, by axes of the reference frame.
+/// Turns a symmetric matrix from the axes of a frame to those of the reference frame.
 Symmetric2 in_reference(const Symmetric2& m, const std::array<double, 4>& a) {
   const double xx = m[0] * a[0] + m[1] * a[2], xy = m[0] * a[1] + m[1] * a[3],
                yx = m[1] * a[0] + m[2] * a[2], yy = m[1] * a[1] + m[2] * a[3];

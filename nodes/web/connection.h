@@ -94,7 +94,7 @@ class SocketConnection : public Connection {
   beast::tcp_stream stream_;
 
  private:
-  std::string address_;  // of the client
+  std::string address_;  // where the client is
 };
 
 inline std::chrono::milliseconds milliseconds_of(double seconds) {

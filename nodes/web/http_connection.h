@@ -133,7 +133,7 @@ class HttpConnection : public SocketConnection,
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<Body>> parser_;
   HttpAnswer answer_;
-  std::optional<http::response_serializer<http::string_body>> rest_;  // of the answer
+  std::optional<http::response_serializer<http::string_body>> rest_;  // what is left of the answer
   bool has_access_ = false;
 };
 

@@ -36,7 +36,7 @@ struct SensorForecast {
   std::vector<ExcludedFrames> excluded;    // one per body that the camera has a limit for
   bool objects_counted = true;             // false: too many objects
   std::vector<FrameForecast> frames;       // examined: the first, the last, and evenly spaced ones
-  std::optional<FrameForecast> mid_run;    // of the frame in the middle of the run, for its limits
+  std::optional<FrameForecast> mid_run;    // the frame in the middle of the run, for its limits
   std::vector<std::string> warnings;       // one line each, with the sensor's place in the scenario
 };
 

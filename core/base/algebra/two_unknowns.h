@@ -6,7 +6,7 @@
 // Weighted least squares of y = first a + second b, such as a straight line.
 namespace dmise {
 
-using TwoSums = std::array<double, 5>;  // of aa, ab, bb, ay, by
+using TwoSums = std::array<double, 5>;  // sums of aa, ab, bb, ay, by
 
 inline TwoSums row_of(double a, double b, double y, double weight) {
   return {weight * a * a, weight * a * b, weight * b * b, weight * a * y, weight * b * y};
