@@ -15,6 +15,9 @@
 namespace dmise {
 namespace {
 
+// Relative error of the PSF where two points are compared with a line: a PSF that is too long looks
+// like a line.
+constexpr double pair_model_error = 0.01;
 constexpr double fit_keeps = 0.8;  // of a faint source's SNR, when the sky is fitted too
 
 struct Light {
@@ -118,6 +121,7 @@ class Candidate {
   /// Whether there are enough pixels to compare fits.
   bool has_light() const { return around_.usable.size() >= 8; }
   bool is_saturated() const { return !around_.clipped.empty(); }
+  double model_error() const { return model_error_; }
   /// Uniform trail of the same light and spread.
   const Trail& light() const { return light_; }
 
@@ -137,14 +141,22 @@ class Candidate {
   std::optional<TwoPoints> as_two_points(const TrailFit& as_point, const TrailFit& as_line) const {
     if (is_saturated() || as_line.deviance > as_point.deviance - detection_limits::line_margin)
       return std::nullopt;  // it is round
-    TwoPoints two = fit_as_two_points(around_.usable, light_, comparison(psf(), 20));
-    const double best = std::min(as_point.deviance, as_line.deviance);
+    FitSettings fit_settings = comparison(psf(), 20);
+    fit_settings.model_error = pair_model_error;
+    TwoPoints two = fit_as_two_points(around_.usable, light_, fit_settings);
+    const auto deviance_as = [&](const TrailFit& one, unsigned free) {
+      return fit_trails(around_.usable, one.trails, {free}, fit_settings).deviance;
+    };
+    const double best =
+        std::min(deviance_as(as_point, trail_place), deviance_as(as_line, trail_line));
     if (!two.fit.good(5.0) || two.fit.deviance > best - detection_limits::blend_margin)
       return std::nullopt;
     return two;
   }
-  double deviance_as_two(const Trail& star) const {
-    return deviance_of_stars(around_.usable, light_, star, 2, comparison(psf(), 15));
+  double deviance_as_two_stars(const Trail& star, double model_error) const {
+    FitSettings fit_settings = comparison(psf(), 15);
+    fit_settings.model_error = model_error;
+    return deviance_of_stars(around_.usable, light_, star, 2, fit_settings);
   }
 
   /// The final fit; empty if it fails or does not explain what is saturated.
@@ -240,7 +252,8 @@ std::vector<Source> pair_among_trails(const Scene& scene, const Candidate& candi
                                       const Trail& star) {
   if (star.length_px < detection_limits::long_trail_sigmas * scene.sigma_px) return {};
   const auto two = candidate.as_two_points(as_point, as_line);
-  if (!two || two->fit.deviance > candidate.deviance_as_two(star) - detection_limits::blend_margin)
+  if (!two || two->fit.deviance > candidate.deviance_as_two_stars(star, pair_model_error) -
+                                      detection_limits::blend_margin)
     return {};
   auto pair = candidate.pair(*two);
   for (const Source& source : pair)
@@ -283,7 +296,8 @@ std::vector<Source> judge_among_stars(const Scene& scene, const Candidate& candi
   }
   if (!candidate.is_line(as_line) ||
       as_line.deviance > as_star.deviance - 2 * detection_limits::blend_margin ||
-      as_line.deviance > candidate.deviance_as_two(star) - detection_limits::blend_margin)
+      as_line.deviance > candidate.deviance_as_two_stars(star, candidate.model_error()) -
+                             detection_limits::blend_margin)
     return {};
   auto source = candidate.bright_source(as_line.trails[0], true);
   // A star cut by the frame's edge looks like a short line, too.
