@@ -74,7 +74,9 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   std::sort(all.begin(), all.end(), before);
   for (Source& source : all) {
     const Trail& t = source.trail();
-    const double margin_px = source.beside ? 1.5 * sigma_px : 3 * sigma_px + 1.5;
+    const double margin_px = !source.beside  ? 3 * sigma_px + 1.5
+                             : source.streak ? 1.5 * sigma_px
+                                             : 0.0;
     const bool piece = std::ranges::any_of(out, [&](const Source& stronger) {
       const Around of(stronger.trail(), std::max(margin_px, 3 * stronger.broad_sigma_px + 1.5));
       const auto has = [&](double along_px) {

@@ -5,6 +5,7 @@
 
 #include "core/base/numeric/assignment.h"
 #include "core/base/units.h"
+#include "core/fusion/blended_pair.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"
 #include "core/tracking/line_of_light.h"
@@ -20,11 +21,24 @@ constexpr double burn_probability = 1e-3;   // a manoeuvre since the last arc
 constexpr double edge_px = 4.0;             // within which a source may be missed
 constexpr double least_looked = 0.05;       // probability of detection that makes a look
 constexpr double certain_sigma_rad = 0.01;  // places known better than this can be missed
+constexpr double blend_reach = 1.5;         // resolutions, within which a blend is one source
 
 bool behind_earth(const Vec<Gcrs>& sensor_m, const Vec<Gcrs>& direction, double range_m) {
   const double along = -dot(sensor_m, direction);
   if (along <= 0 || along >= range_m) return false;
   return norm(sensor_m + direction * along) < earth_m;
+}
+
+/// The source within an angle of a direction, if it is there alone.
+std::optional<std::size_t> only_source(const SensorFrame& frame, const Vec<Gcrs>& direction,
+                                       double within_rad) {
+  std::optional<std::size_t> only;
+  for (std::size_t row = 0; row < frame.sources.size(); ++row) {
+    if (angle_rad(frame.sources[row].observation.direction, direction) > within_rad) continue;
+    if (only) return std::nullopt;
+    only = row;
+  }
+  return only;
 }
 
 }  // namespace
@@ -97,6 +111,50 @@ PredictedDirection Fusion::predicted(const Candidate& candidate, const SensorFra
   return out ? *out : PredictedDirection{};  // range 0: no prediction
 }
 
+/// The two tracks' parts of the source, if it is more likely the light of both than of either
+/// alone.
+std::optional<BlendedPair> Fusion::blend_of(const Candidate& a, const Candidate& b,
+                                            const SensorFrame& frame,
+                                            const AngleObservation& seen) const {
+  const auto first = a.track->filter.predict(seen.time, seen.sensor_m),
+             second = b.track->filter.predict(seen.time, seen.sensor_m);
+  if (!first || !second || angle_rad(first->direction, second->direction) > frame.resolution_rad)
+    return std::nullopt;
+  const double fainter = a.track->magnitude(a.range_m) - b.track->magnitude(b.range_m);
+  BlendedPair blend = blended_pair(seen, *first, *second, 1 / (1 + std::pow(10.0, 0.4 * fainter)));
+  const double p = settings_.detection_probability;
+  const double alone = std::min(innovation_of(*first, seen).d2, innovation_of(*second, seen).d2);
+  if (!(blend.d2 < settings_.gate_d2) || blend.d2 > alone + 2 * std::log(p / (1 - p)))
+    return std::nullopt;
+  return blend;
+}
+
+void Fusion::take_blends(const SensorFrame& frame, std::span<const Candidate> all,
+                         std::vector<bool>& found, std::vector<bool>& blended) {
+  const double reach_rad = blend_reach * frame.resolution_rad;
+  if (!(reach_rad > 0.0)) return;
+  std::vector<std::size_t> tracks;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (all[k].track && all[k].track->status == TrackStatus::confirmed &&
+        all[k].track->brightness.is_known())
+      tracks.push_back(k);
+  std::ranges::sort(tracks, {}, [&](std::size_t k) { return all[k].direction.z; });
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    for (std::size_t j = i + 1; j < tracks.size(); ++j) {
+      const Candidate &a = all[tracks[i]], &b = all[tracks[j]];
+      if (b.direction.z - a.direction.z > reach_rad) break;
+      if (found[tracks[i]] || found[tracks[j]] || angle_rad(a.direction, b.direction) > reach_rad)
+        continue;
+      const auto row = only_source(frame, unit(a.direction + b.direction), reach_rad);
+      if (!row || blended[*row]) continue;
+      const auto blend = blend_of(a, b, frame, frame.sources[*row].observation);
+      if (!blend) continue;
+      found[tracks[i]] = a.track->take_part(blend->parts[0]);
+      found[tracks[j]] = b.track->take_part(blend->parts[1]);
+      blended[*row] = found[tracks[i]] || found[tracks[j]];
+    }
+}
+
 void Fusion::associate(Scene& scene, const SensorFrame& frame,
                        std::span<const std::uint64_t> inside) {
   std::vector<Candidate> all = candidates(scene, frame, inside);
@@ -116,10 +174,13 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
     if (lit[k] < 0) lit[k] = scene.sunlit(frame.sensor_m + all[k].direction * all[k].range_m) > 0;
     return lit[k] > 0;
   };
+  std::vector<bool> found(all.size(), false), blended(frame.sources.size(), false);
+  take_blends(frame, all, found, blended);
   for (std::size_t row = 0; row < frame.sources.size(); ++row) {
+    if (blended[row]) continue;
     const AngleObservation& seen = frame.sources[row].observation;
     for (const std::uint32_t k : cells.near(seen.direction)) {
-      if (angle_rad(seen.direction, all[k].direction) > all[k].radius_rad ||
+      if (found[k] || angle_rad(seen.direction, all[k].direction) > all[k].radius_rad ||
           (frame.needs_sunlight && !is_lit(k)))
         continue;
       auto& [time, direction] = known[k];
@@ -132,15 +193,15 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
       PredictedDirection from_line = direction;
       from_line.direction =
           unit(direction.direction * direction.range_m - (seen.sensor_m - frame.sensor_m));
-      const Innovation found = innovation_of(from_line, seen);
-      if (!(found.d2 < settings_.gate_d2)) continue;
-      const double spread = std::log((2 * pi) * (2 * pi) * found.covariance_rad2.determinant());
+      const Innovation off = innovation_of(from_line, seen);
+      if (!(off.d2 < settings_.gate_d2)) continue;
+      const double spread = std::log((2 * pi) * (2 * pi) * off.covariance_rad2.determinant());
       const double exists = all[k].track   ? all[k].track->existence()
                             : all[k].burnt ? burn_probability
                                            : 1.0;
       const double burn = all[k].burnt ? -2 * std::log(burn_probability) : 0.0;
-      pairs.push_back({row, k, found.d2 + spread + alone + burn});
-      likelihoods.push_back(p * exists * std::exp(-(found.d2 + spread) / 2));
+      pairs.push_back({row, k, off.d2 + spread + alone + burn});
+      likelihoods.push_back(p * exists * std::exp(-(off.d2 + spread) / 2));
     }
   }
   const std::vector<std::size_t> columns = assign(frame.sources.size(), all.size(), pairs);
@@ -150,8 +211,8 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (columns[pairs[i].row] != pairs[i].column) others[pairs[i].row] += likelihoods[i];
 
-  std::vector<bool> found(all.size(), false);
   for (std::size_t row = 0; row < columns.size(); ++row) {
+    if (blended[row]) continue;
     const SeenSource& source = frame.sources[row];
     LiveTrack* track = nullptr;
     if (columns[row] != unassigned) {

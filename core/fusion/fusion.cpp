@@ -9,9 +9,11 @@
 namespace dmise {
 namespace {
 
-constexpr double together_s = 2.0;        // exposures that share a prediction of the catalogue
-constexpr double prior_before_s = 60.0;   // that late detections may precede the first
-constexpr double same_gate_d2 = 30.0;     // between two states of one object, 3 degrees of freedom
+constexpr double together_s = 2.0;       // exposures that share a prediction of the catalogue
+constexpr double prior_before_s = 60.0;  // that late detections may precede the first
+constexpr double same_gate_d2 = 30.0;    // between two states of one object, 3 degrees of freedom
+// Share of an orbit's exposures in which a track took another source, that makes it another object.
+constexpr double seen_beside_share = 0.7;
 constexpr double gone = 0.02;             // probability of existence at which a track ends
 constexpr double certain = 0.99;          // and with which it may be confirmed
 constexpr double around_run_s = 86400.0;  // that kept orbits reach beyond the run at either end
@@ -101,8 +103,14 @@ LiveTrack* Fusion::begin_catalogued(std::size_t object, SimTime seen, bool burnt
   return tracks_.back().get();
 }
 
-bool Fusion::is_known(const OrbitEstimate& estimate) const {
+bool Fusion::is_known(const StartedOrbit& orbit) const {
+  const OrbitEstimate& estimate = orbit.fit.estimate;
   for (const auto& track : tracks_) {
+    // An object that was seen beside the orbit's points is another, however near.
+    const auto beside = std::ranges::count_if(orbit.sources, [&](const LooseSource& s) {
+      return s.source.is_point && track->is_seen_beside(seen(s).detection_id);
+    });
+    if (double(beside) > seen_beside_share * double(orbit.sources.size())) continue;
     const auto other =
         track->filter.estimate_at(std::max(estimate.state.time, track->filter.time()));
     if (!other) continue;
@@ -138,7 +146,7 @@ void Fusion::begin_unknown(const std::vector<LooseSource>& loose) {
       });
     };
     if (!std::ranges::all_of(orbit.sources, is_loose)) continue;  // another took it
-    if (!is_known(orbit.fit.estimate)) begin(orbit, settings_.confirm_unknown);
+    if (!is_known(orbit)) begin(orbit, settings_.confirm_unknown);
   }
 }
 
@@ -148,8 +156,7 @@ void Fusion::begin_from_arcs(const std::vector<LooseSource>& loose) {
     if (std::ranges::none_of(tracks_, [&](const auto& t) { return holds(t->associated, s); }))
       left.push_back(s);
   for (const StartedOrbit& orbit : arcs_.add(left))
-    if (!is_known(orbit.fit.estimate))
-      begin(orbit, int(orbit.sources.size()) + settings_.confirm_arc);
+    if (!is_known(orbit)) begin(orbit, int(orbit.sources.size()) + settings_.confirm_arc);
 }
 
 void Fusion::begin(const StartedOrbit& orbit, int min_detections) {

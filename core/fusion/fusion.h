@@ -1,10 +1,12 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/fusion/arc_start.h"
+#include "core/fusion/blended_pair.h"
 #include "core/fusion/catalogue_prediction.h"
 #include "core/fusion/fusion_settings.h"
 #include "core/fusion/kept_orbits.h"
@@ -52,6 +54,11 @@ class Fusion {
   struct Candidate;
   struct Scene;
   void associate(Scene& scene, const SensorFrame& frame, std::span<const std::uint64_t> inside);
+  std::optional<BlendedPair> blend_of(const Candidate& a, const Candidate& b,
+                                      const SensorFrame& frame, const AngleObservation& seen) const;
+  /// Gives sources that are the light of two tracks to both, and marks these as found.
+  void take_blends(const SensorFrame& frame, std::span<const Candidate> all,
+                   std::vector<bool>& found, std::vector<bool>& blended);
   std::vector<Candidate> candidates(Scene& scene, const SensorFrame& frame,
                                     std::span<const std::uint64_t> inside) const;
   PredictedDirection predicted(const Candidate& candidate, const SensorFrame& frame,
@@ -60,7 +67,8 @@ class Fusion {
   void begin_unknown(const std::vector<LooseSource>& loose);
   void begin_from_arcs(const std::vector<LooseSource>& loose);
   void begin(const StartedOrbit& orbit, int min_detections);
-  bool is_known(const OrbitEstimate& estimate) const;
+  /// Whether an orbit is that of a track within both's errors, and not of another object beside it.
+  bool is_known(const StartedOrbit& orbit) const;
   void take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
                  std::vector<std::string>& taken);
   void age(SimTime time);

@@ -8,6 +8,12 @@ namespace {
 
 constexpr double max_log_odds = 12.0;  // a long track is given up within a dozen looks, too
 constexpr double standard_range_m = 1e6;
+constexpr std::size_t max_seen_in = 64;
+
+/// "<sensor>/<frame>" of a detection's "<sensor>/<frame>/<index>".
+std::string exposure_of(const std::string& detection_id) {
+  return detection_id.substr(0, detection_id.rfind('/'));
+}
 
 }  // namespace
 
@@ -51,6 +57,8 @@ void LiveTrack::count(const AngleObservation& observation, double magnitude_seen
   last_seen = std::max(last_seen, observation.time);
   associated.push_back(observation.detection_id);
   if (arc) arc->push_back(observation);
+  if (seen_in.size() == max_seen_in) seen_in.erase(seen_in.begin());
+  seen_in.push_back(exposure_of(observation.detection_id));
 }
 
 bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,
@@ -65,6 +73,19 @@ bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,
   count(observation, magnitude_seen, filter.estimate().state.position_m);
   changed = true;
   return true;
+}
+
+bool LiveTrack::take_part(const AngleObservation& part) {
+  const auto found = filter.update(part);
+  if (!found) return false;
+  innovation_d2 = found->d2;
+  last_seen = std::max(last_seen, part.time);
+  changed = true;
+  return true;
+}
+
+bool LiveTrack::is_seen_beside(const std::string& detection_id) const {
+  return std::ranges::find(seen_in, exposure_of(detection_id)) != seen_in.end();
 }
 
 void LiveTrack::miss(double detection_probability) {

@@ -38,6 +38,7 @@ struct LiveTrack {
   MeanBrightness brightness;
   double innovation_d2 = 0.0;
   std::vector<std::string> associated;  // since the last tick
+  std::vector<std::string> seen_in;     // exposures that it took a detection of, the last ones
   bool changed = true;
   // Where orbits are kept: what was believed of a catalogued object, and the detections that no
   // kept orbit has yet.
@@ -61,6 +62,11 @@ struct LiveTrack {
   /// may have made it. False, and nothing changed, if the filter refuses it.
   bool take(const AngleObservation& observation, double magnitude, double detection_probability,
             double false_per_sr);
+  /// Takes what a source that is the light of this object and another's tells of its orbit. It is
+  /// no detection of this one. False, and nothing changed, if the filter refuses it.
+  bool take_part(const AngleObservation& part);
+  /// Whether it took a detection of the exposure that a detection is of.
+  bool is_seen_beside(const std::string& detection_id) const;
   /// A look with this probability of detection found nothing.
   void miss(double detection_probability);
 };

@@ -66,14 +66,18 @@ SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>
     out.wcs.reset();
     out.searched = report.limiting_magnitude != 0.0;
     out.needs_sunlight = false;
+  } else if (report.psf_fwhm_px > 0.0) {
+    out.resolution_rad = report.psf_fwhm_px * wcs_scale_rad_per_px(report.wcs);
   }
   for (const Detection& d : detections)
     if (auto observation = angle_observation(d)) {
       observation->covariance_rad2[0] += pointing_sigma_rad * pointing_sigma_rad;
       observation->covariance_rad2[2] += pointing_sigma_rad * pointing_sigma_rad;
       widen(observation->covariance_rad2);
-      out.sources.push_back(
-          {std::move(*observation), d.magnitude - report.magnitudes.solar_colour_mag, d.star_like});
+      out.sources.push_back({.observation = std::move(*observation),
+                             .magnitude = d.magnitude - report.magnitudes.solar_colour_mag,
+                             .star_like = d.star_like,
+                             .is_point = d.kind == DetectionKind::point});
     }
   return out;
 }

@@ -15,6 +15,7 @@ struct SeenSource {
   AngleObservation observation;
   double magnitude = 0.0;  // `no_magnitude`: none was measured
   bool star_like = false;  // may be a star: begins no track
+  bool is_point = false;   // it is no streak, of which there may be several pieces
 };
 
 /// One exposure as a fusion takes it: where it looked, how deep, and what it found.
@@ -27,6 +28,7 @@ struct SensorFrame {
   double half_angle_rad = 0.0;      // half the cone's opening, (0, pi]
   std::optional<Wcs> wcs;           // with columns and rows tells what is in the frame
   int columns = 0, rows = 0;        // without a wcs the cone is the field
+  double resolution_rad = 0.0;      // FWHM of a point: nearer ones may blend. 0: not known
   double limiting_magnitude = 0.0;  // V-solar, as those of `sources`
   bool searched = true;             // false: nothing can be concluded from what it does not show
   bool needs_sunlight = true;       // false: it also sees what the Sun does not shine on

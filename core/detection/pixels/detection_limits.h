@@ -21,6 +21,8 @@ inline constexpr double even_snr = 25.0, even_snr_per_px = 5.0;
 // two to four stars, corrected for chance; a star's trail beside another's.
 inline constexpr double blend_margin = 16.0, line_margin = 8.0, chain_margin = 6.0,
                         trail_margin = 4.0;
+// Length of stars' trails in sigmas of the PSF, from which two points are no blend of two stars.
+inline constexpr double long_trail_sigmas = 4.0;
 // SNR over the root of the length of a streak [px], below which its ends are lost in noise.
 inline constexpr double faint_per_px = 4.0;
 // Longest blend of stars, without their trails, that pixels above the threshold may be.

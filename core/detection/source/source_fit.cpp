@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/detection/source/line_search.h"
@@ -278,6 +279,23 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     return std::nullopt;
   set_flags(scene, trail, source);
   return source;
+}
+
+Source part_of(const TrailFit& fit, std::size_t which, unsigned free) {
+  const auto parameters = std::size_t(std::popcount(free));
+  Source out;
+  out.beside = true;
+  out.free = free;
+  out.fit = fit;
+  out.fit.trails = {fit.trails[which]};
+  out.fit.parameters = int(parameters + 1);
+  std::vector<int> from;
+  for (std::size_t k = 0; k < parameters; ++k) from.push_back(int(which * parameters + k));
+  from.push_back(fit.parameters - 1);
+  out.fit.covariance.clear();
+  for (const int i : from)
+    for (const int j : from) out.fit.covariance.push_back(fit.cov(i, j));
+  return out;
 }
 
 void hold_ends_at_edge(const Scene& scene, Source& source) {

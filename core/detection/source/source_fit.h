@@ -77,6 +77,10 @@ bool plausible(const Scene& scene, const Trail& trail);
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
                                  double model_error, bool draft = false, unsigned free = 0);
 
+/// One of the trails of a joint fit with a background as a source: its parameters, of which each
+/// trail has those of `free`, and the background, of the whole covariance.
+Source part_of(const TrailFit& fit, std::size_t which, unsigned free);
+
 /// Whether pixels across a trail have values at a place along it, in the frame or the nearest to
 /// it.
 bool has_values_at(const Scene& scene, const Trail& trail, double along_px);

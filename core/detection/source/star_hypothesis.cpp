@@ -115,6 +115,22 @@ double rarity_of_row(const Scene& scene, const Trail& line, int count) {
   return std::clamp(-2 * std::log(rows), 0.0, max_rarity);
 }
 
+/// A point where a fit leaves the brightest pixel.
+Trail brightest_beside(const std::vector<FitPixel>& pixels, const TrailFit& fit, const Psf& psf) {
+  const std::vector<double> light = light_in(pixels, fit.trails, psf);
+  double most = -HUGE_VAL;
+  Trail out;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double left = pixels[i].signal_e - light[i];
+    if (left <= most) continue;
+    most = left;
+    out = {.x_px = double(pixels[i].x), .y_px = double(pixels[i].y)};
+  }
+  const double sigma_px = psf.equivalent_sigma_px();
+  out.flux_e = std::max(most, 1.0) * 2 * pi * sigma_px * sigma_px;
+  return out;
+}
+
 }  // namespace
 
 double share_of_trails_on(const Scene& scene, const Trail& line) {
@@ -156,8 +172,14 @@ bool point_beats_star(const Scene& scene, const Source& source) {
   const auto pixels = pixels_near(scene, star, 2.5 * scene.sigma_px + 0.5);
   const FitSettings fit_settings = comparison_of(scene, source);
   const double as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings).deviance;
-  const double as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings).deviance;
-  return as_point < as_star - detection_limits::blend_margin;
+  const TrailFit as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
+  const double limit = as_star - detection_limits::blend_margin;
+  if (as_point.deviance < limit) return true;
+  if (star.length_px < detection_limits::long_trail_sigmas * scene.sigma_px) return false;
+  // Where another point is in the way of that trail, the trail has its light.
+  return fit_trails(pixels, {point, brightest_beside(pixels, as_point, fit_settings.psf)},
+                    {trail_place, trail_place}, fit_settings)
+             .deviance < limit;
 }
 
 bool is_of_overlapping_trails(const Scene& scene, const Source& point) {

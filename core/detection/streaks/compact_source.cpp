@@ -11,10 +11,14 @@
 #include "core/detection/source/star_hypothesis.h"
 #include "core/detection/source/template_snr.h"
 #include "core/detection/streaks/faint_streaks.h"
+#include "core/detection/streaks/points_beside.h"
 
 namespace dmise {
 namespace {
 
+// Relative error of the PSF where two points are compared with a line: a PSF that is too long looks
+// like a line.
+constexpr double pair_model_error = 0.01;
 constexpr double fit_keeps = 0.8;  // a fit of the sky too leaves so much of a faint source's SNR
 
 struct Light {
@@ -120,6 +124,7 @@ class Candidate {
   /// Whether there are enough pixels to compare fits.
   bool has_light() const { return around_.usable.size() >= 8; }
   bool is_saturated() const { return !around_.clipped.empty(); }
+  double model_error() const { return model_error_; }
   /// Uniform trail of the same light and spread.
   const Trail& light() const { return light_; }
 
@@ -135,8 +140,26 @@ class Candidate {
     return fit(psf(), point, trail_place, 8);
   }
   TrailFit as_line() const { return fit(psf(), light_, trail_line, 15); }
-  double deviance_as_two(const Trail& star) const {
-    return deviance_of_stars(around_.usable, light_, star, 2, comparison(psf(), 15));
+  /// Two points, where they explain the light better than one, than an even line, and to its noise.
+  std::optional<TwoPoints> as_two_points(const TrailFit& as_point, const TrailFit& as_line) const {
+    if (is_saturated() || as_line.deviance > as_point.deviance - detection_limits::line_margin)
+      return std::nullopt;  // it is round
+    FitSettings fit_settings = comparison(psf(), 20);
+    fit_settings.model_error = pair_model_error;
+    TwoPoints two = fit_as_two_points(around_.usable, light_, fit_settings);
+    const auto deviance_as = [&](const TrailFit& one, unsigned free) {
+      return fit_trails(around_.usable, one.trails, {free}, fit_settings).deviance;
+    };
+    const double best =
+        std::min(deviance_as(as_point, trail_place), deviance_as(as_line, trail_line));
+    if (!two.fit.good(5.0) || two.fit.deviance > best - detection_limits::blend_margin)
+      return std::nullopt;
+    return two;
+  }
+  double deviance_as_two_stars(const Trail& star, double model_error) const {
+    FitSettings fit_settings = comparison(psf(), 15);
+    fit_settings.model_error = model_error;
+    return deviance_of_stars(around_.usable, light_, star, 2, fit_settings);
   }
 
   /// The final fit; empty if it fails or does not explain what is saturated.
@@ -154,18 +177,27 @@ class Candidate {
     return bright;
   }
 
+  /// Two points that blend, empty also if one is too faint.
+  std::vector<Source> pair(const TwoPoints& two) const { return points_beside(scene_, two.points); }
+  /// Two points that blend, neither of which may be a star.
+  std::vector<Source> pair_without_stars(const TwoPoints& two) const {
+    auto found = pair(two);
+    const bool may_be_stars = std::ranges::any_of(found, [&](const Source& source) {
+      const Trail& t = source.trail();
+      return !scene_.would_be_known(t.x_px, t.y_px, t.flux_e) || may_be_star(t);
+    });
+    if (may_be_stars) found.clear();
+    return found;
+  }
+
   /// The source, empty also if it does not stand out from the noise by `min_snr`.
   std::optional<Source> significant_source(const Trail& start, double min_snr) const {
     auto significant = source(start, start.length_px > 0.0);
     if (!significant) return significant;
     const Trail& t = significant->trail();
     min_snr *= crowding(*scene_.flat, t);
-    // A star that is brighter than expected, by scintillation or by nature.
-    const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
-    const bool may_be_star = t.length_px < 6 * scene_.sigma_px &&
-                             scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e);
-    if (may_be_star || (!is_saturated() && (template_snr(scene_, t) < min_snr ||
-                                            significant->snr() < fit_keeps * min_snr)))
+    if (may_be_star(t) || (!is_saturated() && (template_snr(scene_, t) < min_snr ||
+                                               significant->snr() < fit_keeps * min_snr)))
       significant.reset();
     return significant;
   }
@@ -179,6 +211,12 @@ class Candidate {
   Psf nearest_gaussian() const { return scene_.psf.sigma_at({light_.x_px, light_.y_px}); }
 
  private:
+  /// Whether it may be a known star that is brighter than expected, by scintillation or by nature.
+  bool may_be_star(const Trail& t) const {
+    const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
+    return t.length_px < 6 * scene_.sigma_px &&
+           scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e);
+  }
   FitSettings comparison(const Psf& psf, int max_steps) const {
     return {.psf = psf,
             .model_error = model_error_,
@@ -192,61 +230,88 @@ class Candidate {
   double model_error_ = 0.0;
 };
 
-/// The judgement where every star is known: a point or a line, whatever the shape of stars.
-std::optional<Source> judge_without_stars(const Candidate& candidate) {
+std::vector<Source> listed(std::optional<Source> source) {
+  std::vector<Source> out;
+  if (source) out.push_back(std::move(*source));
+  return out;
+}
+
+/// The judgement where every star is known: one point or two or a line, whatever the shape of
+/// stars.
+std::vector<Source> judge_without_stars(const Candidate& candidate) {
   const TrailFit as_point = candidate.as_point(), as_line = candidate.as_line();
+  if (const auto two = candidate.as_two_points(as_point, as_line))
+    if (auto pair = candidate.pair_without_stars(*two); !pair.empty()) return pair;
   if (as_point.good(5.0) && as_point.deviance < as_line.deviance + detection_limits::line_margin)
-    return candidate.significant_source(as_point.trails[0], detection_limits::min_snr);
-  if (!candidate.is_line(as_line)) return std::nullopt;
+    return listed(candidate.significant_source(as_point.trails[0], detection_limits::min_snr));
+  if (!candidate.is_line(as_line)) return {};
   const Trail& line = as_line.trails[0];
-  return candidate.significant_source(line, min_streak_snr(line.length_px));
+  return listed(candidate.significant_source(line, min_streak_snr(line.length_px)));
+}
+
+/// Two points that blend, where stars trail and are neither of them.
+std::vector<Source> pair_among_trails(const Scene& scene, const Candidate& candidate,
+                                      const TrailFit& as_point, const TrailFit& as_line,
+                                      const Trail& star) {
+  if (star.length_px < detection_limits::long_trail_sigmas * scene.sigma_px) return {};
+  const auto two = candidate.as_two_points(as_point, as_line);
+  if (!two || two->fit.deviance > candidate.deviance_as_two_stars(star, pair_model_error) -
+                                      detection_limits::blend_margin)
+    return {};
+  auto pair = candidate.pair(*two);
+  for (const Source& source : pair)
+    if (source.at_edge || is_of_overlapping_trails(scene, source)) return {};
+  return pair;
 }
 
 /// The judgement by the shape of stars.
-std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& candidate) {
+std::vector<Source> judge_among_stars(const Scene& scene, const Candidate& candidate) {
   const Trail& light = candidate.light();
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
   constexpr double surely_star_sigmas = 0.5;
   TrailFit as_star =
       candidate.fit(candidate.nearest_gaussian(), star, trail_place, 8, surely_star_sigmas);
-  if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  if (as_star.good(surely_star_sigmas)) return {};
   if (!scene.psf.is_round_gaussian()) {  // most stars are known by the nearest Gaussian
     as_star = candidate.fit(candidate.psf(), as_star.trails[0], trail_place, 8, surely_star_sigmas);
-    if (as_star.good(surely_star_sigmas)) return std::nullopt;
+    if (as_star.good(surely_star_sigmas)) return {};
   }
   const bool stars_trail = star.length_px >= detection_limits::min_difference_px;
   TrailFit as_point;
   if (stars_trail) as_point = candidate.as_point();
   const bool may_be_point =
       stars_trail && as_point.deviance < as_star.deviance - detection_limits::blend_margin;
-  if (as_star.good(3.5) && !may_be_point) return std::nullopt;
+  if (as_star.good(3.5) && !may_be_point) return {};
 
   const TrailFit as_line = candidate.as_line();
+  if (stars_trail)
+    if (auto pair = pair_among_trails(scene, candidate, as_point, as_line, star); !pair.empty())
+      return pair;
   if (may_be_point && as_point.good(5.0) &&
       as_point.deviance < as_line.deviance + detection_limits::blend_margin) {
     auto source = candidate.bright_source(as_point.trails[0], false);
     // A star cut by the frame's edge looks like a point.
     if (source && !source->at_edge && point_beats_star(scene, *source) &&
         !is_of_overlapping_trails(scene, *source))
-      return source;
-    return std::nullopt;
+      return listed(std::move(source));
+    return {};
   }
   if (!candidate.is_line(as_line) ||
       as_line.deviance > as_star.deviance - 2 * detection_limits::blend_margin ||
-      as_line.deviance > candidate.deviance_as_two(star) - detection_limits::blend_margin)
-    return std::nullopt;
+      as_line.deviance > candidate.deviance_as_two_stars(star, candidate.model_error()) -
+                             detection_limits::blend_margin)
+    return {};
   auto source = candidate.bright_source(as_line.trails[0], true);
   // A star cut by the frame's edge looks like a short line, too.
-  if (!source || (source->at_edge && source->trail().length_px < star.length_px))
-    return std::nullopt;
+  if (!source || (source->at_edge && source->trail().length_px < star.length_px)) return {};
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
   double tolerance_px = std::max(detection_limits::min_difference_px, 4 * sigma_length_px);
   if (candidate.is_saturated()) tolerance_px += 2 * scene.sigma_px;  // wings show ends less sharply
   if (moves_like_star(scene, *source, star, tolerance_px) || is_wide_body(scene, *source) ||
       !beats_stars(scene, *source) || is_of_overlapping_trails(scene, *source))
-    return std::nullopt;
-  return source;
+    return {};
+  return listed(std::move(source));
 }
 
 }  // namespace
@@ -256,10 +321,10 @@ CompactJudgement judge_compact(const Scene& scene, const Component& component) {
   if (!candidate.has_light()) return {.star_like = true};
   const Trail& light = candidate.light();
   if (scene.would_be_known(light.x_px, light.y_px, light.flux_e))
-    return {.source = judge_without_stars(candidate)};
-  auto source = judge_among_stars(scene, candidate);
-  const bool star_like = !source;
-  return {std::move(source), star_like};
+    return {.sources = judge_without_stars(candidate)};
+  auto sources = judge_among_stars(scene, candidate);
+  const bool star_like = sources.empty();
+  return {std::move(sources), star_like};
 }
 
 }  // namespace dmise

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "core/detection/pixels/detection_limits.h"
 #include "core/detection/streaks/compact_source.h"
@@ -73,8 +74,7 @@ void find_beside_stars(const Scene& scene, const FilteredFrame& frame, const Com
        parts_of(component, frame, detection_limits::connect_snr, detection_limits::seed_snr)) {
     if (is_long(scene, part) || is_clipped(scene, part) || is_of_hidden_stars(frame, part))
       continue;
-    if (auto judged = judge_compact(scene, part); judged.source)
-      found.push_back(std::move(*judged.source));
+    std::ranges::move(judge_compact(scene, part).sources, std::back_inserter(found));
   }
 }
 
@@ -114,8 +114,8 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
     if (is_calm(*component)) out.reach_px[std::size_t(component - components.data())].reset();
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].source)
-      out.sources.push_back(std::move(*found[i].source));
+    if (!found[i].sources.empty())
+      std::ranges::move(found[i].sources, std::back_inserter(out.sources));
     else if (found[i].star_like)
       ++out.star_like;
     else if (is_calm(*compacts[i]))

@@ -132,25 +132,6 @@ Trail beside(const Trail& t, double first_px, double second_px, double flux_e) {
   return out;
 }
 
-/// One of the trails of a fit as a source: its parameters and the background, of the whole
-/// covariance.
-Source part_of(const TrailFit& fit, std::size_t which, unsigned free, std::size_t parameters) {
-  Source out;
-  out.streak = true;
-  out.beside = true;
-  out.free = free;
-  out.fit = fit;
-  out.fit.trails = {fit.trails[which]};
-  out.fit.parameters = int(parameters + 1);
-  std::vector<int> from;
-  for (std::size_t k = 0; k < parameters; ++k) from.push_back(int(which * parameters + k));
-  from.push_back(fit.parameters - 1);
-  out.fit.covariance.clear();
-  for (const int i : from)
-    for (const int j : from) out.fit.covariance.push_back(fit.cov(i, j));
-  return out;
-}
-
 /// Whether two trails are alongside each other, apart and of nearly one direction.
 bool are_beside(const Trail& a, const Trail& b, double sigma_px) {
   if (std::abs(std::remainder(a.angle_rad - b.angle_rad, pi)) > max_turn_rad) return false;
@@ -213,9 +194,9 @@ std::vector<Source> streaks_beside(const Scene& scene, const Trail& one) {
   fit_settings.model_error = 0.0;
   fit = fit_trails(pixels, two, {free, free}, fit_settings);
   std::vector<Source> out;
-  const auto parameters = std::size_t(fit.parameters - 1) / 2;
   for (std::size_t k = 0; k < 2; ++k) {
-    Source source = part_of(fit, k, free, parameters);
+    Source source = part_of(fit, k, free);
+    source.streak = true;
     if (!plausible(scene, source.trail()) || !(source.fit.cov(2, 2) > 0)) return {};
     hold_ends_at_edge(scene, source);
     set_flags(scene, source.trail(), source);
