@@ -15,6 +15,8 @@ constexpr double width_step = 1.2;
 constexpr double code_tolerance = 0.012;
 constexpr std::size_t pattern_sources = 150;
 constexpr std::size_t quad_neighbours = 6, triangle_neighbours = 12;
+/// Of stars that a frame is expected to show, over those of which patterns are whole in it.
+constexpr double shown_more = 10.0;
 /// A neighbour in the image may be measured fainter by this than its star.
 constexpr double fainter = 0.75;
 /// Sources, by falling flux, with which patterns begin: few first.
@@ -251,6 +253,9 @@ PlateSolution PlateSearcher::solve() {
     const bool is_near = hint_.camera_from_gcrs || (hint_.axis && hint_.focal_length_px > 0);
     if (!is_near) {
       try_all(cache_.whole_sky(sky_, rank_in_frame(from)), list);
+      if (found_) continue;
+      if (const auto* deeper = cache_.fainter(sky_, rank_in_frame(from) / shown_more))
+        try_all(*deeper, list);
       continue;
     }
     const auto stars = stars_near_belief(from);

@@ -6,7 +6,8 @@ namespace dmise {
 namespace {
 
 constexpr std::uint32_t none = ~0U;
-constexpr double max_stars = 400'000.0;
+constexpr double max_stars = 400'000.0, max_fainter = 3'000'000.0;  // of the whole sky
+constexpr std::size_t bright_neighbours = 5, fainter_neighbours = 4;
 
 /// The nearest stars that are not fainter, by rising distance.
 void nearest_brighter(const PlateSky& sky, std::uint32_t star, std::size_t most,
@@ -87,7 +88,19 @@ const PatternIndex& PatternCache::whole_sky(const PlateSky& sky, double rank) {
   const auto kept = by_rank_.find(shared);
   if (kept != by_rank_.end()) return kept->second;
   const auto stars = sky.catalogued({0, 0, 1}, pi, shared);
-  return by_rank_.try_emplace(shared, sky, stars, 5, 3).first->second;
+  return by_rank_.try_emplace(shared, sky, stars, bright_neighbours, 3).first->second;
+}
+
+const PatternIndex* PatternCache::fainter(const PlateSky& sky, double rank) {
+  const double most = std::min(max_fainter, double(sky.map().stars.size()));
+  if (!(std::min(rank, most) > max_stars)) return nullptr;
+  if (!fainter_) {
+    auto stars = sky.catalogued({0, 0, 1}, pi, most);
+    const float brightest = sky.magnitude_of_rank(max_stars);
+    std::erase_if(stars, [&](std::uint32_t i) { return sky.map().stars.v_mag[i] < brightest; });
+    fainter_.emplace(sky, std::move(stars), fainter_neighbours, 3);
+  }
+  return &*fainter_;
 }
 
 }  // namespace dmise

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
+#include "core/base/units.h"
 #include "core/calibration/known_defects.h"
 
 namespace dmise {
@@ -58,6 +60,17 @@ void note_unused_catalogue(const UnknownFacts& unknown, const DetectionResult& d
   }
 }
 
+/// Notes that streaks are trails of stars, instead of what was assumed of the mount.
+void note_trails(const DetectionResult& detection, FrameNotes& notes) {
+  if (!detection.star_trails) return;
+  const auto& [trail, count] = *detection.star_trails;
+  std::erase_if(notes.assumed, [](const std::string& text) { return text.starts_with("mount: "); });
+  notes.assumed.push_back(formatted(
+      "mount: drifts evenly: %zu streaks are alike, as trails of stars are: %.3g px at "
+      "%.1f deg to the rows",
+      count, std::hypot(trail.x_px, trail.y_px), std::atan2(trail.y_px, trail.x_px) / deg));
+}
+
 /// Notes that there is no plate near a header's pointing.
 void note_no_plate(const UnknownFacts& unknown, FrameNotes& notes) {
   const std::string where = unknown.has(FrameFact::pointing)
@@ -76,7 +89,9 @@ CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map
 CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame, Threads& threads,
                                                       bool blind) const {
   const auto calibrated = without_hot_pixels(frame);
-  return detect_calibrated(calibrated ? *calibrated : frame, threads, blind);
+  Result result = detect_calibrated(calibrated ? *calibrated : frame, threads, blind);
+  note_trails(result.detection, result.notes);
+  return result;
 }
 
 CalibratedDetector::Result CalibratedDetector::detect_calibrated(const Frame& frame,

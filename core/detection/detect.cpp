@@ -18,6 +18,7 @@
 #include "core/detection/source/scene.h"
 #include "core/detection/source/source_fit.h"
 #include "core/detection/source/template_snr.h"
+#include "core/detection/stars/alike_streaks.h"
 #include "core/detection/stars/hide_stars.h"
 #include "core/detection/stars/psf_measure.h"
 #include "core/detection/stars/trailed_stars.h"
@@ -137,11 +138,18 @@ std::vector<Component> components_of(const Scene& scene, FilteredFrame& filtered
                          &filtered);
 }
 
+/// What a search has found, and the sources of its detections.
+struct Found {
+  DetectionResult result;
+  std::vector<Source> sources;
+};
+
 /// Detects in a prepared frame. `known`: the stars that were subtracted from it; null: none.
 void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
                const std::vector<Component>& components, const KnownStars* known,
                const FrameHeader& header, const DetectSettings& settings, Threads& threads,
-               DetectionResult& result) {
+               Found& found) {
+  DetectionResult& result = found.result;
   if (known) {
     // Between the stars the background is lower and has less noise.
     background.measure_without(known->lit(), scene.counts, threads);
@@ -178,6 +186,7 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
     Detection detection = describe(source, header);
     if (curve) describe_light(source, std::move(*curve), header, detection);
     add_detection(std::move(detection), header, result.detections);
+    found.sources.push_back(std::move(source));
   }
   result.report.detections = std::uint32_t(result.detections.size());
 }
@@ -185,8 +194,7 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
 /// Detects in a frame less its stars' trails, which it shows itself. Returns false if there are
 /// none or too many to find in bounded time.
 bool detect_among_trails(const Scene& with_stars, const FrameHeader& header,
-                         const DetectSettings& settings, Threads& threads,
-                         DetectionResult& result) {
+                         const DetectSettings& settings, Threads& threads, Found& found) {
   const std::vector<TrailedStar> stars = find_trailed_stars(with_stars);
   if (stars.empty()) return false;
   StarlessFrame frame = without_stars(with_stars, stars);
@@ -201,17 +209,16 @@ bool detect_among_trails(const Scene& with_stars, const FrameHeader& header,
   std::vector<Trail> subtracted;
   for (const TrailedStar& star : stars) subtracted.push_back(star.trail);
   const KnownStars known(std::move(subtracted), std::move(frame.lit));
-  detect_in(scene, background, filtered, components, &known, header, settings, threads, result);
-  result.report.star_like += std::uint32_t(stars.size());
+  detect_in(scene, background, filtered, components, &known, header, settings, threads, found);
+  found.result.report.star_like += std::uint32_t(stars.size());
   return true;
 }
 
-}  // namespace
+bool is_of_unknown_mount(const FrameHeader& header) { return header.mount == "unknown"; }
 
-DetectionResult detect(const CountImage& counts, const FrameHeader& header,
-                       const PixelMask* unusable, Threads& threads, const CatalogueSky* sky,
-                       const DetectSettings& settings) {
-  if (header.shutter_closed()) return without_detection(counts, header);
+/// Detects by the motion of stars that a header tells.
+Found found_by(const FrameHeader& header, const CountImage& counts, const PixelMask* unusable,
+               Threads& threads, const CatalogueSky* sky, const DetectSettings& settings) {
   Background background(counts, detection_limits::background_cell_px, threads);
   const StarMotion stars(header, counts.columns, counts.rows);
   Scene scene = frame_scene(counts, background, stars, header, unusable);
@@ -220,17 +227,44 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   scene.use(measure_psf(scene, components));
   scene.sources_per_px2 = double(components.size() + 1) / double(counts.pixels.size());
   if (scene.unusable) hide(filtered, *scene.unusable);
-  DetectionResult result;
+  Found found;
   std::optional<KnownStars> known;
-  if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
+  if (sky) known = hide_stars(scene, filtered, *sky, header, found.result.stars);
   // Where stars trail the frame itself shows them, and more of them than most catalogues have.
-  const bool is_unknown = header.mount == "unknown";
-  if ((is_unknown ? stars_trail(scene) : stars_trail_far(scene)) &&
-      detect_among_trails(scene, header, settings, threads, result))
-    return result;
+  if ((is_of_unknown_mount(header) ? stars_trail(scene) : stars_trail_far(scene)) &&
+      detect_among_trails(scene, header, settings, threads, found))
+    return found;
   detect_in(scene, background, filtered, components, known ? &*known : nullptr, header, settings,
-            threads, result);
-  return result;
+            threads, found);
+  return found;
+}
+
+/// Streaks that may be trails of stars, though a header tells of others or of none.
+std::optional<AlikeStreaks> unexpected_trails(const FrameHeader& header, const Found& found) {
+  constexpr std::size_t most_others = 10;  // sources like stars, for each streak
+  if (!is_of_unknown_mount(header)) return std::nullopt;
+  auto alike = alike_streaks(found.sources);
+  if (alike && found.result.report.star_like > most_others * alike->count) alike.reset();
+  return alike;
+}
+
+}  // namespace
+
+DetectionResult detect(const CountImage& counts, const FrameHeader& header,
+                       const PixelMask* unusable, Threads& threads, const CatalogueSky* sky,
+                       const DetectSettings& settings) {
+  if (header.shutter_closed()) return without_detection(counts, header);
+  Found found = found_by(header, counts, unusable, threads, sky, settings);
+  const auto trails = unexpected_trails(header, found);
+  if (!trails) return std::move(found.result);
+  FrameHeader drifting = header;
+  set_even_drift(drifting, trails->trail);
+  Found among = found_by(drifting, counts, unusable, threads, sky, settings);
+  // Most of what a frame shows is stars: they are what leaves the fewer objects.
+  if (among.result.detections.size() >= found.result.detections.size())
+    return std::move(found.result);
+  among.result.star_trails = trails;
+  return std::move(among.result);
 }
 
 DetectionResult without_detection(const CountImage& counts, const FrameHeader& header) {

@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-constexpr double share_error = 0.1;  // of either's light: bodies turn
+constexpr double share_error = 0.1;  // relative error of either's light: bodies turn
 
 AngleObservation part_of(const AngleObservation& seen, const PredictedDirection& one,
                          const Eigen::Vector2d& residual_rad, const Eigen::Matrix2d& covariance) {

@@ -24,24 +24,6 @@ constexpr double otherwise_fwhm_px = 2.0;
 // A shorter trail looks as coma and astigmatism do, which the PSF follows.
 constexpr double min_trail_sigmas = 3.5;
 
-/// Turns a camera by a rotation vector in its axes.
-Quaternion turned(const Quaternion& camera, double x_rad, double y_rad) {
-  const double half = 0.5 * std::hypot(x_rad, y_rad);
-  if (!(half > 0)) return camera;
-  const double share = std::sin(half) / (2 * half);
-  const Quaternion by{std::cos(half), share * x_rad, share * y_rad, 0.0};
-  return quaternion_of(rotation_of<CameraFrame, CameraFrame>(by) *
-                       rotation_of<CameraFrame, Gcrs>(camera));
-}
-
-void set_drift(FrameHeader& header, double dx_px, double dy_px) {
-  const double f = header.focal_length_px, down = header.mirrored ? -1.0 : 1.0;
-  const double x_rad = -down * dy_px / (2 * f), y_rad = dx_px / (2 * f);
-  const Quaternion middle = header.camera_from_gcrs[1];
-  header.camera_from_gcrs[0] = turned(middle, -x_rad, -y_rad);
-  header.camera_from_gcrs[2] = turned(middle, x_rad, y_rad);
-}
-
 /// A mount at rest: the camera turns with the Earth.
 void set_at_rest(FrameHeader& header) {
   const Clock clock(parse_utc(header.middle_utc));
@@ -199,7 +181,7 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
     cards.assumed("mount: turns with the stars, which do not trail");
     return;
   }
-  set_drift(header, trail->x_px, trail->y_px);
+  set_even_drift(header, *trail);
   cards.assumed("mount: drifts evenly: " + trail_text(*trail));
 }
 

@@ -16,20 +16,22 @@ inline const StarMap& kstars() {
   return map;
 }
 
-/// Stars at random places, of which there are 4 times as many in 1.25 mag: as many a square degree
-/// as Tycho-2 has to V = 11.
+/// Stars at random places, of which there are 4 times as many in 1.25 mag, to V = 12.
+inline StarMap random_sky(std::uint32_t count) {
+  std::mt19937_64 random(1);
+  const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
+  StarCatalogue c;
+  for (std::uint32_t i = 0; i < count; ++i)
+    append_star(c, {.id = i,
+                    .ra_rad = 2 * pi * uniform(),
+                    .dec_rad = std::asin(2 * uniform() - 1),
+                    .v_mag = 12.0 + 1.25 / std::log(4.0) * std::log(1 - uniform())});
+  return star_map_of(std::move(c));
+}
+
+/// As many a square degree as Tycho-2 has to V = 11.
 inline const StarMap& crowded_sky() {
-  static const StarMap map = [] {
-    std::mt19937_64 random(1);
-    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
-    StarCatalogue c;
-    for (std::uint32_t i = 0; i < 400'000; ++i)
-      append_star(c, {.id = i,
-                      .ra_rad = 2 * pi * uniform(),
-                      .dec_rad = std::asin(2 * uniform() - 1),
-                      .v_mag = 12.0 + 1.25 / std::log(4.0) * std::log(1 - uniform())});
-    return star_map_of(std::move(c));
-  }();
+  static const StarMap map = random_sky(400'000);
   return map;
 }
 

@@ -382,5 +382,29 @@ TEST(PlateSolver, FieldsOfFewStarsAreSolved) {
   }
 }
 
+// As many stars a square degree as Tycho-2 has near the poles of the Galaxy, of which fields of 0.7
+// deg show some 10 to 20, and ten times as many fainter ones that are not in the catalogue.
+TEST(PlateSolver, FieldsNarrowerThanADegreeAreSolvedBlind) {
+  const StarMap map = test::random_sky(1'600'000);
+  const PlateSky sky = test::sky_of(map);
+  PatternCache cache;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    SeenPlate p = test::seen_plate(
+        sky, {"gnomonic", 0.7, 37.0 * seed, -80 + 17.0 * seed, 31.0 * seed, 1024, 1024}, 400,
+        sigma_px, seed);
+    const std::size_t stars = p.sources.size();
+    std::mt19937_64 random(seed);
+    const auto uniform = [&](double to) { return to * double(random() >> 11) * 0x1p-53; };
+    for (std::size_t i = 0; i < 10 * stars; ++i)
+      p.sources.push_back({.x_px = uniform(1023),
+                           .y_px = uniform(1023),
+                           .flux = p.sources[stars - 1].flux * (0.1 + uniform(0.8)),
+                           .covariance_px2 = {sigma_px * sigma_px, 0, sigma_px * sigma_px}});
+    const PlateSolution s = solve_plate(
+        p.sources, p.belief, sky, {.narrowest_rad = 0.6 * deg, .widest_rad = 0.8 * deg}, &cache);
+    EXPECT_LT(error_px(p, s), 1.0) << seed << ": " << stars << " stars";
+  }
+}
+
 }  // namespace
 }  // namespace dmise

@@ -4,6 +4,19 @@
 #include <cmath>
 
 namespace dmise {
+namespace {
+
+/// Turns a camera by a rotation vector in its axes.
+Quaternion turned(const Quaternion& camera, double x_rad, double y_rad) {
+  const double half = 0.5 * std::hypot(x_rad, y_rad);
+  if (!(half > 0)) return camera;
+  const double share = std::sin(half) / (2 * half);
+  const Quaternion by{std::cos(half), share * x_rad, share * y_rad, 0.0};
+  return quaternion_of(rotation_of<CameraFrame, CameraFrame>(by) *
+                       rotation_of<CameraFrame, Gcrs>(camera));
+}
+
+}  // namespace
 
 StarMotion::StarMotion(const FrameHeader& header, int columns, int rows)
     : projection_(header.projection),
@@ -52,6 +65,14 @@ double StarMotion::longest_trail_px() const {
   for (const PixelPosition& t : trails_over_frame())
     longest = std::max(longest, std::hypot(t.x_px, t.y_px));
   return longest;
+}
+
+void set_even_drift(FrameHeader& header, PixelPosition trail) {
+  const double f = header.focal_length_px, down = header.mirrored ? -1.0 : 1.0;
+  const double x_rad = -down * trail.y_px / (2 * f), y_rad = trail.x_px / (2 * f);
+  const Quaternion middle = header.camera_from_gcrs[1];
+  header.camera_from_gcrs[0] = turned(middle, -x_rad, -y_rad);
+  header.camera_from_gcrs[2] = turned(middle, x_rad, y_rad);
 }
 
 }  // namespace dmise

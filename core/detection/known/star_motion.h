@@ -34,4 +34,8 @@ class StarMotion {
   Rotation<CameraFrame, CameraFrame> start_from_middle_, end_from_middle_;
 };
 
+/// Sets a header's attitudes so that stars trail by so much in the frame's middle, at an even rate.
+/// Which end was first is not known: the trail's sign is taken as it is.
+void set_even_drift(FrameHeader& header, PixelPosition trail);
+
 }  // namespace dmise

@@ -10,9 +10,9 @@
 namespace dmise {
 namespace {
 
-constexpr std::array shares{0.5, 0.2, 0.8};  // of the light in the first point, where fits begin
+constexpr std::array shares{0.5, 0.2, 0.8};  // light of the first point over both, where fits begin
 constexpr double max_chi2_of_pair = 2.0;     // reduced
-constexpr double min_share = 0.02;           // of the light of both that the fainter has
+constexpr double min_share = 0.02;           // light of the fainter over both
 constexpr std::size_t min_pixels = 12;
 constexpr int rounds = 3;
 
