@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace dmise {
 
@@ -16,5 +17,15 @@ void release_pages(std::span<std::byte> range);
 /// Asks for large pages behind a range before it is first written: an image then takes tens of page
 /// faults instead of thousands.
 void prefer_large_pages(std::span<std::byte> range);
+
+/// Zeros in large pages.
+template <class T>
+std::vector<T> zeros_in_large_pages(std::size_t count) {
+  std::vector<T> out;
+  out.reserve(count);
+  prefer_large_pages(std::as_writable_bytes(std::span(out.data(), count)));
+  out.resize(count);
+  return out;
+}
 
 }  // namespace dmise

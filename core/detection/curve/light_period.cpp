@@ -126,7 +126,7 @@ std::size_t harmonics_at(const StreakLight& light, double frequency) {
 }
 
 /// A frequency, its harmonics and how good they are.
-struct Candidate {
+struct PeriodCandidate {
   double frequency = 0.0, gain = 0.0, score = -HUGE_VAL;
   std::size_t harmonics = 0;
 };
@@ -146,8 +146,8 @@ class Periodogram {
   double price() const { return std::log(bins_); }
 
   /// The best number of harmonics of a frequency.
-  Candidate at(double frequency) const {
-    Candidate best;
+  PeriodCandidate at(double frequency) const {
+    PeriodCandidate best;
     const std::vector<double> gains = gains_at(frequency, harmonics_at(light_, frequency));
     for (std::size_t h = 1; others + 2 * h < gains.size(); ++h) {
       const double gain = gains[others + 2 * h];
@@ -157,18 +157,18 @@ class Periodogram {
     return best;
   }
 
-  Candidate best() const {
+  PeriodCandidate best() const {
     constexpr double min_share = 0.85;  // light that repeats has this share of free light's gain
-    Candidate out = highest(1 / light_.length_px);
+    PeriodCandidate out = highest(1 / light_.length_px);
     // Less than two periods are free light: what repeats explains nearly as much.
     if (const double two = 2 / light_.length_px; out.frequency < two) {
-      const Candidate repeated = highest(two);
+      const PeriodCandidate repeated = highest(two);
       if (repeated.gain > min_share * out.gain) out = repeated;
     }
     // A multiple of the frequency explains it as well where harmonics between have only noise.
     for (std::size_t m = 6; m >= 2; --m) {
       if (out.harmonics < m) continue;
-      const Candidate shorter =
+      const PeriodCandidate shorter =
           refined(out.frequency * double(m), out.harmonics / m, 1 / light_.length_px);
       if (shorter.score > out.score - least_for_longer - min_share_for_longer * out.score)
         return shorter;
@@ -177,17 +177,17 @@ class Periodogram {
   }
 
   /// The best score from a frequency on.
-  Candidate highest(double first) const {
-    Candidate out;
+  PeriodCandidate highest(double first) const {
+    PeriodCandidate out;
     const double last = highest_frequency(light_);
     for (double f = first; f <= last; f += frequency_step(f))
-      if (const Candidate one = at(f); one.score > out.score) out = one;
+      if (const PeriodCandidate one = at(f); one.score > out.score) out = one;
     if (out.harmonics == 0) return out;
     return refined(out.frequency, out.harmonics, frequency_step(out.frequency));
   }
 
   /// The best frequency within a step of one.
-  Candidate refined(double frequency, std::size_t harmonics, double step) const {
+  PeriodCandidate refined(double frequency, std::size_t harmonics, double step) const {
     step = std::min(step, 1 / (steps * double(harmonics) * light_.length_px));
     const Least least = golden_section([&](double f) { return -gain_at(f, harmonics); },
                                        frequency - step, frequency + step, 1e-4 * step);
@@ -201,7 +201,7 @@ class Periodogram {
   }
 
   /// The standard deviation of a frequency, by the curvature of chi2; infinite if it has none.
-  double sigma_of(const Candidate& c) const {
+  double sigma_of(const PeriodCandidate& c) const {
     const double step = 0.1 * frequency_step(c.frequency);
     const double bend = (gain_at(c.frequency + step, c.harmonics) - 2 * c.gain +
                          gain_at(c.frequency - step, c.harmonics)) /
@@ -210,7 +210,7 @@ class Periodogram {
   }
 
   /// Whether the light repeats rather than bends once: by parabola and cubic.
-  bool beats_bend(const Candidate& c) const {
+  bool beats_bend(const PeriodCandidate& c) const {
     std::vector<Column> columns = others_;
     for (const double power : {2.0, 3.0})
       columns.push_back(along_line(
@@ -222,14 +222,14 @@ class Periodogram {
   }
 
   /// Probability that noise has a score as high, at any frequency and number of harmonics.
-  double false_alarm(const Candidate& c) const;
+  double false_alarm(const PeriodCandidate& c) const;
 
   /// Coefficients of all columns and their covariance.
   struct Solution {
     std::vector<double> value;
     BandedMatrix factor;
   };
-  std::optional<Solution> solution(const Candidate& c) const {
+  std::optional<Solution> solution(const PeriodCandidate& c) const {
     std::vector<Column> columns = others_;
     add_harmonics(light_, c.frequency, c.harmonics, columns);
     Solution out{.value = {}, .factor = products_of(columns)};
@@ -269,7 +269,7 @@ double log_factor(std::size_t n) {
   return double(n) * std::log(2.0) - log_odd + std::log(std::max(sum, 1e-300));
 }
 
-double Periodogram::false_alarm(const Candidate& c) const {
+double Periodogram::false_alarm(const PeriodCandidate& c) const {
   // The times are spread evenly over the line: their variance is its length^2 / 12.
   const double time_px = light_.length_px * std::sqrt(4 * pi / 12);
   double sum = 0.0;
@@ -324,7 +324,7 @@ int times_on_line(double turn, double frequency, double length_px) {
 }
 
 /// Whether the line shows what repeats at least twice: flashes, dips, or one whole sine.
-bool repeats(const Wave& wave, const Candidate& c, double length_px) {
+bool repeats(const Wave& wave, const PeriodCandidate& c, double length_px) {
   if (c.harmonics == 1) return c.frequency * length_px >= 1.0;
   const auto [least, most] = wave.extremes();
   const bool flashes = wave.at_phase(most) > -wave.at_phase(least);
@@ -367,7 +367,7 @@ void set_amplitude(const Periodogram::Solution& fit, const Wave& wave, double mi
 
 std::optional<FoundPeriod> light_period(const StreakLight& light) {
   const Periodogram periodogram(light);
-  const Candidate best = periodogram.best();
+  const PeriodCandidate best = periodogram.best();
   if (best.harmonics == 0 || !(best.frequency > 0)) return std::nullopt;
   FoundPeriod found;
   LightPeriod& out = found.period;

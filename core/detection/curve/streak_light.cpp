@@ -134,38 +134,57 @@ BinEquations bin_equations(const StreakLight& light) {
   return out;
 }
 
-/// Light of all bins, those beyond the ends too, with errors.
-BinnedLight solved(const StreakLight& light) {
+/// Equations of bins, solved for their light and an even background.
+struct SolvedBins {
+  BandedMatrix factor;
+  std::vector<double> by_background;  // light by a background of 1
+  double weight = 0.0;                // of the background
+  BinnedLight light;                  // without errors; empty: there is no solution
+};
+
+SolvedBins solved_light(const StreakLight& light) {
   BinEquations equations = bin_equations(light);
   const std::size_t bins = equations.matrix.size();
-  BinnedLight out;
+  SolvedBins out{.factor = std::move(equations.matrix), .by_background = {}, .light = {}};
   double most = 0.0;
-  for (std::size_t i = 0; i < bins; ++i) most = std::max(most, equations.matrix.at(i, i));
+  for (std::size_t i = 0; i < bins; ++i) most = std::max(most, out.factor.at(i, i));
+  std::vector<bool> is_measured;
   for (std::size_t i = 0; i < bins; ++i)
-    out.is_measured.push_back(equations.matrix.at(i, i) > least_seen * most);
-  if (!equations.matrix.factorise()) return {};
-  const std::vector<double> by_background = equations.matrix.solve(equations.background);
-  out.light_e = equations.matrix.solve(equations.right);
-  double weight = light.background_weight, right = light.background_right;
+    is_measured.push_back(out.factor.at(i, i) > least_seen * most);
+  if (!out.factor.factorise()) return out;
+  out.by_background = out.factor.solve(equations.background);
+  out.light.is_measured = std::move(is_measured);
+  out.light.light_e = out.factor.solve(equations.right);
+  double right = light.background_right;
+  out.weight = light.background_weight;
   for (std::size_t i = 0; i < bins; ++i) {
-    weight -= equations.background[i] * by_background[i];
-    right -= equations.background[i] * out.light_e[i];
+    out.weight -= equations.background[i] * out.by_background[i];
+    right -= equations.background[i] * out.light.light_e[i];
   }
-  out.background_e = right / weight;
+  out.light.background_e = right / out.weight;
+  for (std::size_t i = 0; i < bins; ++i)
+    out.light.light_e[i] -= out.light.background_e * out.by_background[i];
+  return out;
+}
+
+/// Light of all bins, those beyond the ends too, with errors.
+BinnedLight solved(const StreakLight& light) {
+  SolvedBins found = solved_light(light);
+  BinnedLight& out = found.light;
+  const std::size_t bins = out.light_e.size();
   for (std::size_t i = 0; i < bins; ++i) {
-    out.light_e[i] -= out.background_e * by_background[i];
     std::vector<double> one(bins, 0.0);
     one[i] = 1.0;
-    const std::vector<double> column = equations.matrix.solve(std::move(one));
-    const double both = by_background[i] / weight;
-    out.variance_e2.push_back(column[i] + by_background[i] * both);
+    const std::vector<double> column = found.factor.solve(std::move(one));
+    const double both = found.by_background[i] / found.weight;
+    out.variance_e2.push_back(column[i] + found.by_background[i] * both);
     const auto with = [&](std::size_t j) {
-      return j < bins ? column[j] + by_background[j] * both : 0.0;
+      return j < bins ? column[j] + found.by_background[j] * both : 0.0;
     };
     out.next_e2.push_back(with(i + 1));
     out.second_e2.push_back(with(i + 2));
   }
-  return out;
+  return std::move(out);
 }
 
 /// Light of the bins in pixels.
@@ -228,7 +247,7 @@ std::optional<StreakLight> streak_light(const Scene& scene, const Source& source
   std::vector<double> model_e = light_in(places, {&line, 1}, psf);
   for (int pass = 0; pass < passes; ++pass) {
     set_equations(pixels, model_e, light);
-    const BinnedLight bins = solved(light);
+    const BinnedLight bins = solved_light(light).light;
     if (bins.light_e.empty()) return std::nullopt;
     const std::vector<double> before = std::exchange(model_e, model_of(pixels, light, bins));
     const double degrees = double(pixels.size()) - double(bins.light_e.size()) - 1;

@@ -107,6 +107,17 @@ void trail_values(const TrailShape& trail, const NormalTable& normal, const doub
              [](std::size_t, const F64*) __attribute__((always_inline)){});
 }
 
+void normal_below_each(const NormalTable& normal, const double* x, std::size_t count, double* out) {
+  const NormalLanes lanes_of_normal{normal};
+  for (std::size_t i = 0; i < count; i += places) {
+    const std::size_t n = count - i < std::size_t(places) ? count - i : std::size_t(places);
+    F64 at{}, below, density;
+    __builtin_memcpy(&at, x + i, n * sizeof(double));
+    lanes_of_normal.both(at, below, density);
+    __builtin_memcpy(out + i, &below, n * sizeof(double));
+  }
+}
+
 void add_block(const TrailPixels& pixels, const double* model, double background_e,
                double model_error, const double* const* gradients, std::size_t n, double* variance,
                TrailSums& to) {

@@ -33,6 +33,9 @@ struct TrailPixels {
   /* The same without derivatives. */                                                            \
   void trail_values(const TrailShape& trail, const NormalTable& normal, const double* x,         \
                     const double* y, double* model);                                             \
+  /* out[i] = the normal distribution function at x[i]. */                                       \
+  void normal_below_each(const NormalTable& normal, const double* x, std::size_t count,          \
+                         double* out);                                                           \
   /* Adds a block. Weights are the inverse of variance + model + (model_error model)^2, which    \
      goes to `variance`. `gradients`: a row of `trail_block` values for each of n parameters. */ \
   void add_block(const TrailPixels& pixels, const double* model, double background_e,            \

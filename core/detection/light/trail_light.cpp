@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/numeric/simd_level.h"
 #include "core/base/units.h"
+#include "core/detection/light/trail_kernels.h"
 #include "core/detection/light/trail_lanes.h"
 
 namespace dmise {
@@ -49,10 +51,10 @@ const NormalTable& normal_table() { return table; }
 
 double normal_density(double x) { return Normal().pdf(x); }
 
-double normal_below(double x) {
-  double cdf, pdf;
-  Normal().both(x, cdf, pdf);
-  return cdf;
+void normal_below_each(std::vector<double>& values) {
+  static const auto below_each = kernel_of(best_simd_level(), sse2::normal_below_each,
+                                           avx2::normal_below_each, avx512::normal_below_each);
+  below_each(table, values.data(), values.size(), values.data());
 }
 
 TrailLight::TrailLight(const Trail& trail, const Psf& psf) {

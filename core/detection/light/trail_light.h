@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "core/base/pixel.h"
 #include "core/detection/light/psf.h"
@@ -64,9 +65,10 @@ class TrailLight {
 
 /// The normal distribution that kernels look up.
 const NormalTable& normal_table();
-/// Its density and distribution function, to 1e-10.
+/// Its density, to 1e-10.
 double normal_density(double x);
-double normal_below(double x);
+/// Replaces values by its distribution function at them, to 1e-10.
+void normal_below_each(std::vector<double>& values);
 
 /// Electrons of the trail in pixel (x, y).
 double trail_value(const Trail& trail, const Psf& psf, double x, double y);

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "core/base/numeric/quantile.h"
+#include "core/base/numeric/simd_level.h"
 #include "core/detection/pixels/bent_sky.h"
+#include "core/detection/pixels/filter_kernels.h"
 
 namespace dmise {
 namespace {
@@ -25,22 +27,32 @@ class Window {
   explicit Window(const std::vector<std::uint32_t>& histogram) : histogram_(histogram) {}
 
   void move(std::size_t from, std::size_t to) {
+    if (to_ == 0) from_ = to_ = median_ = from;
     for (; to_ < to; ++to_) add(to_, 1);
-    for (; from_ > from; --from_) add(from_ - 1, 1);
+    for (; from_ > from; --from_) {
+      add(from_ - 1, 1);
+      below_ += histogram_[from_ - 1];
+    }
     for (; to_ > to; --to_) add(to_ - 1, -1);
-    for (; from_ < from; ++from_) add(from_, -1);
+    for (; from_ < from; ++from_) {
+      add(from_, -1);
+      if (from_ < median_)
+        below_ -= histogram_[from_];
+      else
+        median_ = from_ + 1;
+    }
   }
   double count() const { return double(count_); }
   double sum() const { return double(sum_); }
   double squares() const { return double(squares_); }
   /// Median as if each number were spread evenly over its bin: finer than one count.
-  double spread_median() const {
-    std::int64_t below = 0;
-    for (std::size_t i = from_; i < to_; ++i) {
-      const std::int64_t here = histogram_[i];
-      if (2 * (below + here) >= count_ && here > 0)
-        return double(i) - 0.5 + (0.5 * double(count_) - double(below)) / double(here);
-      below += here;
+  double spread_median() {
+    while (below_ > 0 && 2 * below_ >= count_) below_ -= histogram_[--median_];
+    for (; median_ < to_; ++median_) {
+      const std::int64_t here = histogram_[median_];
+      if (2 * (below_ + here) >= count_ && here > 0)
+        return double(median_) - 0.5 + (0.5 * double(count_) - double(below_)) / double(here);
+      below_ += here;
     }
     return double(from_);
   }
@@ -55,6 +67,8 @@ class Window {
 
   const std::vector<std::uint32_t>& histogram_;
   std::size_t from_ = 0, to_ = 0;
+  std::size_t median_ = 0;  // bin of the median before
+  std::int64_t below_ = 0;  // of the window, in bins before that one
   std::int64_t count_ = 0, sum_ = 0, squares_ = 0;
 };
 
@@ -157,20 +171,9 @@ Sky clipped_sky(CellMemory& memory) {
 }
 
 float mean_of(const std::vector<float>& values) {
-  std::array<double, 8> sums{};
-  std::size_t i = 0;
-  for (; i + sums.size() <= values.size(); i += sums.size())
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += double(values[i + k]);
-  double sum = 0.0;
-  for (; i < values.size(); ++i) sum += double(values[i]);
-  for (const double one : sums) sum += one;
-  return float(sum / double(values.size()));
-}
-
-std::uint16_t rounded(float count) {
-  count += 0.5f;
-  count = count < 65535.0f ? count : 65535.0f;
-  return std::uint16_t(std::int32_t(count > 0.0f ? count : 0.0f));
+  static const auto sum_of_values =
+      kernel_of(best_simd_level(), sse2::sum_of_values, avx2::sum_of_values, avx512::sum_of_values);
+  return float(sum_of_values(values.data(), values.size()) / double(values.size()));
 }
 
 /// Copies up to 64 values but those of which a bit is set; returns the end.
@@ -214,6 +217,8 @@ void Background::measure(const CountImage& counts, Threads& threads, const BitMa
         dark -= std::popcount(lit->bits(x, y, std::min(word, area.x1 - x + 1)));
     return dark >= eighth;
   };
+  const auto flat_counts =
+      kernel_of(best_simd_level(), sse2::flat_counts, avx2::flat_counts, avx512::flat_counts);
   const auto measure_cell = [&](std::size_t cell, bool flatten, CellMemory& memory) {
     const Area area = area_of(cell);
     const bool skip = lit && is_dark(area);
@@ -234,9 +239,8 @@ void Background::measure(const CountImage& counts, Threads& threads, const BitMa
       for (int x = 0; x < width; x += 32) __builtin_prefetch(from + width + x);  // the next cell's
       if (flatten) {
         const float* level_at = memory.levels.data() + std::ptrdiff_t(y - area.y0) * width;
-        std::uint16_t* flat = memory.row.data();
-        for (int x = 0; x < width; ++x) flat[x] = rounded(float(from[x]) - level_at[x] + mean);
-        from = flat;
+        flat_counts(from, level_at, mean, std::size_t(width), memory.row.data());
+        from = memory.row.data();
       }
       for (int x = 0; x < width; x += word) {
         const int count = std::min(word, width - x);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/numeric/simd_level.h"
+#include "core/detection/pixels/filter_kernels.h"
+
 namespace dmise {
 
 CellMesh::CellMesh(int columns, int rows, int across_cells, int down_cells)
@@ -33,6 +36,8 @@ float CellMesh::cell(int i, int j) const {
 
 void CellMesh::row(int y, int begin, int end, float* out) const {
   if (begin >= end) return;
+  static const auto between_cells =
+      kernel_of(best_simd_level(), sse2::between_cells, avx2::between_cells, avx512::between_cells);
   const Between v = down_[std::size_t(y)];
   const float* above = values.data() + std::size_t(v.cell) * std::size_t(across);
   const float* below = down > 1 ? above + across : above;
@@ -44,7 +49,10 @@ void CellMesh::row(int y, int begin, int end, float* out) const {
   for (int x = begin; x < end; ++cell) {
     const float one = in_row(cell), rise = in_row(std::min(cell + 1, last_cell)) - one;
     const int stop = std::min(ends_[cell], end);
-    for (; x < stop; ++x) *out++ = one + next_[std::size_t(x)] * rise;
+    if (stop <= x) continue;
+    between_cells(next_.data() + x, one, rise, std::size_t(stop - x), out);
+    out += stop - x;
+    x = stop;
   }
 }
 

@@ -9,6 +9,7 @@ constexpr float most = 31.0f;  // FilteredFrame::most
 constexpr float per_sigma = 5.0f;
 
 using Steps = std::int8_t __attribute__((vector_size(lanes)));
+using Counts = std::uint16_t __attribute__((vector_size(2 * lanes)));
 
 /// Numbers from 0 on.
 DMISE_INLINE I32 numbers() {
@@ -63,6 +64,44 @@ void weigh_rows(const float* const* before, const float* const* after, const flo
 
 void above_level(const std::uint16_t* counts, const float* level, std::size_t count, float* out) {
   for (std::size_t x = 0; x < count; ++x) out[x] = float(counts[x]) - level[x];
+}
+
+void flat_counts(const std::uint16_t* counts, const float* level, float mean, std::size_t count,
+                 std::uint16_t* out) {
+  for_vectors(count, [&](std::size_t x, std::size_t n) {
+    const bool whole = n == std::size_t(lanes);
+    const Counts c = whole ? load<Counts>(counts + x) : load_part<Counts>(counts + x, n);
+    const F32 sky = whole ? load<F32>(level + x) : load_part<F32>(level + x, n);
+    const F32 flat = to_f32(__builtin_convertvector(c, I32)) - sky + mean + 0.5f;
+    const F32 held = max(min(flat, splat(65535.0f)), F32{});
+    const Counts rounded = __builtin_convertvector(to_i32(held), Counts);
+    if (whole)
+      store(out + x, rounded);
+    else
+      __builtin_memcpy(out + x, &rounded, n * sizeof(std::uint16_t));
+  });
+}
+
+void between_cells(const float* weights, float first, float rise, std::size_t count, float* out) {
+  std::size_t x = 0;
+  for (; x + std::size_t(lanes) <= count; x += std::size_t(lanes))
+    store(out + x, first + load<F32>(weights + x) * rise);
+  for (; x < count; ++x) out[x] = first + weights[x] * rise;
+}
+
+double sum_of_values(const float* values, std::size_t count) {
+  // Eight lanes on every instruction set, so that the sum has one order.
+  constexpr std::size_t lanes_of_sum = 8;
+  using Values = float __attribute__((vector_size(lanes_of_sum * sizeof(float))));
+  using Sums = double __attribute__((vector_size(lanes_of_sum * sizeof(double))));
+  Sums sums{};
+  std::size_t i = 0;
+  for (; i + lanes_of_sum <= count; i += lanes_of_sum)
+    sums += __builtin_convertvector(load<Values>(values + i), Sums);
+  double sum = 0.0;
+  for (; i < count; ++i) sum += double(values[i]);
+  for (std::size_t k = 0; k < lanes_of_sum; ++k) sum += sums[k];
+  return sum;
 }
 
 void mark_above(const float* value, const float* noise, float bar, std::size_t count,

@@ -20,6 +20,13 @@ inline constexpr std::size_t filter_block = 32;
                   std::size_t radius, std::size_t count, float* out);                             \
   /* out[x] = counts[x] - sky[x]. */                                                              \
   void above_level(const std::uint16_t* counts, const float* sky, std::size_t count, float* out); \
+  /* out[x] = counts[x] - sky[x] + mean, rounded and held to 16 bits. */                          \
+  void flat_counts(const std::uint16_t* counts, const float* sky, float mean, std::size_t count,  \
+                   std::uint16_t* out);                                                           \
+  /* out[x] = first + weights[x] rise. */                                                         \
+  void between_cells(const float* weights, float first, float rise, std::size_t count,            \
+                     float* out);                                                                 \
+  double sum_of_values(const float* values, std::size_t count);                                   \
   /* Whether a value of each block of columns is above `bar` noise[x]. */                         \
   void mark_above(const float* value, const float* noise, float bar, std::size_t count,           \
                   std::uint8_t* blocks);                                                          \

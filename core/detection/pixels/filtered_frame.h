@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/detection/pixels/bit_mask.h"
 
@@ -30,7 +31,7 @@ struct FilteredFrame {
       : columns(columns_),
         rows(rows_),
         sigma_px(sigma),
-        snr(std::size_t(columns_) * std::size_t(rows_)) {}
+        snr(zeros_in_large_pages<std::int8_t>(std::size_t(columns_) * std::size_t(rows_))) {}
 
   std::int8_t* row(int y) { return snr.data() + std::size_t(y) * std::size_t(columns); }
   const std::int8_t* row(int y) const { return snr.data() + std::size_t(y) * std::size_t(columns); }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/base/memory.h"
+
 namespace dmise {
 namespace {
 
@@ -33,7 +35,9 @@ void transpose_tile(const std::int8_t* const* from, std::int8_t* const* to) {
 }  // namespace
 
 TurnedFrame::TurnedFrame(const FilteredFrame& frame)
-    : columns(frame.columns), rows(frame.rows), snr(frame.snr.size()) {
+    : columns(frame.columns),
+      rows(frame.rows),
+      snr(zeros_in_large_pages<std::int8_t>(frame.snr.size())) {
   const auto to = [&](int x, int y) {
     return snr.data() + std::size_t(x) * std::size_t(rows) + std::size_t(y);
   };

@@ -73,6 +73,7 @@ void join_four(std::int16_t* const rows[4], std::size_t shift, std::size_t begin
   const I16 lower = splat(low_whole);
   const I16 lower_half = splat(of_halves[0] < of_halves[1] ? of_halves[0] : of_halves[1]);
   const auto two = std::uint32_t(2 * shift);
+  const bool keeps_sums = least.keeps_sums;
   for (std::size_t x = begin; x < end; x += step) {
     const std::int16_t *to_b = b + x + shift, *to_c = c + x + 2 * shift, *to_d = d + x + 3 * shift;
     const I16 first = load<I16>(a + x), middle = load<I16>(to_c + 1);
@@ -84,10 +85,12 @@ void join_four(std::int16_t* const rows[4], std::size_t shift, std::size_t begin
     const I16 lower1_next = load<I16>(to_c + 2) + load<I16>(to_d + 3);
     const I16 sums[4] = {upper0 + lower0, upper0 + lower0_next, upper1 + lower1,
                          upper1 + lower1_next};
-    store(a + x, sums[0]);
-    store(b + x, sums[1]);
-    store(c + x, sums[2]);
-    store(d + x, sums[3]);
+    if (keeps_sums) {
+      store(a + x, sums[0]);
+      store(b + x, sums[1]);
+      store(c + x, sums[2]);
+      store(d + x, sums[3]);
+    }
     const I16 most = max(max(sums[0], sums[1]), max(sums[2], sums[3]));
     const I16 max_half = max(max(upper0, upper1), max(lower0, lower1));
     const auto column = std::uint32_t(x);

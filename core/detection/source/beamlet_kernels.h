@@ -23,6 +23,7 @@ struct BeamletHits {
 struct BeamletLeast {
   std::int16_t whole[4] = {32767, 32767, 32767, 32767};
   std::int16_t halves[2] = {32767, 32767};
+  bool keeps_sums = true;  // for a longer strip; else the rows are left as they may be
 };
 
 /// Columns beside a row's end that kernels read, besides the shifts, and write.

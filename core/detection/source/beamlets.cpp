@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "core/base/memory.h"
 #include "core/detection/source/beamlet_kernels.h"
 
 namespace dmise {
@@ -90,7 +91,7 @@ class Block {
     const std::size_t beyond = 3 * std::size_t(size) / 4 + 2 * beamlet_spare;
     const std::size_t stride = (width_ + beyond + aligned - 1) / aligned * aligned;
     const std::size_t values = std::size_t(size) * stride + aligned;
-    if (memory.values.size() < values) memory.values.resize(values);
+    if (memory.values.size() < values) memory.values = zeros_in_large_pages<std::int16_t>(values);
     const std::size_t hits = 4 * (width_ + beamlet_spare);
     if (memory.whole.size() < hits) memory.whole.resize(hits), memory.halves.resize(hits);
     void* place = memory.values.data();
@@ -167,7 +168,7 @@ class Block {
     for (int a = 0; a < part; ++a) {
       std::int16_t* rows[4] = {};
       for (int k = 0; k < parts; ++k) rows[k] = rows_[std::size_t(first + k * part + a)];
-      BeamletLeast least;
+      BeamletLeast least{.keeps_sums = length < size_};
       for (int k = 0; k < parts; ++k) least.whole[k] = level.least_of(parts * a + k);
       BeamletHits hits{memory_.whole.data(), memory_.halves.data()};
       // Further to the left no line of so large a shift comes in from.

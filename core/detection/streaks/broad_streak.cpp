@@ -25,25 +25,44 @@ Extent extent_on(const std::vector<Point>& points, const Line& line, double half
 }
 
 /// Median light of pixels along lines beside a line, from `-max_half_px` on; NaN where too few are
-/// usable.
-std::vector<double> profile_across(const Scene& scene, const Line& line, const Extent& extent) {
-  constexpr int max_places = 200;
-  constexpr std::size_t min_places = 12;
-  const Extent seen = in_frame(scene, line, extent);
-  const int step = std::max(1, (seen.to - seen.from) / max_places);
-  std::vector<double> profile;
-  for (int off = -max_half_px; off <= max_half_px; ++off) {
-    std::vector<double> light;
-    for (int k = seen.from; k <= seen.to; k += step) {
-      const Point at = line.at(k, off);
-      const int x = int(std::lround(at.x)), y = int(std::lround(at.y));
-      if (scene.contains(x, y) && scene.is_usable(x, y))
-        light.push_back(double(scene.pixel(x, y).signal_e));
-    }
-    profile.push_back(light.size() < min_places ? std::nan("") : median_of(std::move(light)));
+/// usable. Each is measured when it is asked for: most lines are narrow.
+class ProfileAcross {
+ public:
+  ProfileAcross(const Scene& scene, const Line& line, const Extent& extent)
+      : scene_(scene),
+        line_(line),
+        seen_(in_frame(scene, line, extent)),
+        light_e_(std::size_t(2 * max_half_px + 1)) {}
+
+  int size() const { return int(light_e_.size()); }
+  double operator[](int i) {
+    auto& light_e = light_e_[std::size_t(i)];
+    if (!light_e) light_e = measured(i - max_half_px);
+    return *light_e;
   }
-  return profile;
-}
+
+ private:
+  double measured(int off) {
+    constexpr int max_places = 200;
+    constexpr std::size_t min_places = 12;
+    const int step = std::max(1, (seen_.to - seen_.from) / max_places);
+    places_e_.clear();
+    for (int k = seen_.from; k <= seen_.to; k += step) {
+      const Point at = line_.at(k, off);
+      const int x = int(std::lround(at.x)), y = int(std::lround(at.y));
+      if (scene_.contains(x, y) && scene_.is_usable(x, y))
+        places_e_.push_back(double(scene_.pixel(x, y).signal_e));
+    }
+    if (places_e_.size() < min_places) return std::nan("");
+    return value_of_rank(places_e_, (places_e_.size() - 1) / 2);
+  }
+
+  const Scene& scene_;
+  Line line_;
+  Extent seen_;
+  std::vector<std::optional<double>> light_e_;
+  std::vector<double> places_e_;  // of the line that is measured
+};
 
 /// What half of a profile's greatest light is between.
 struct Sides {
@@ -51,12 +70,12 @@ struct Sides {
   double width_px() const { return last_px - first_px; }
 };
 
-std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_px) {
+std::optional<Sides> sides_of(ProfileAcross& profile, double reach_px) {
   Sides sides;
   int top = -1;
-  for (int i = 0; i < int(profile.size()); ++i)
-    if (std::abs(i - max_half_px) <= reach_px && profile[std::size_t(i)] > sides.max_e) {
-      sides.max_e = profile[std::size_t(i)];
+  for (int i = 0; i < profile.size(); ++i)
+    if (std::abs(i - max_half_px) <= reach_px && profile[i] > sides.max_e) {
+      sides.max_e = profile[i];
       top = i;
     }
   if (top < 0) return std::nullopt;
@@ -65,8 +84,8 @@ std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_p
     const double half = 0.5 * sides.max_e;
     std::optional<double> found;
     int dark = 0;
-    for (int i = top; i >= 0 && i < int(profile.size()) && dark < 4; i += way) {
-      const double here = profile[std::size_t(i)];
+    for (int i = top; i >= 0 && i < profile.size() && dark < 4; i += way) {
+      const double here = profile[i];
       if (!std::isfinite(here)) return std::nullopt;
       if (here < half) {
         ++dark;
@@ -74,8 +93,8 @@ std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_p
       }
       dark = 0;
       const int next = i + way;
-      if (next < 0 || next >= int(profile.size())) return std::nullopt;
-      const double beyond = profile[std::size_t(next)];
+      if (next < 0 || next >= profile.size()) return std::nullopt;
+      const double beyond = profile[next];
       if (beyond < half) found = i + way * (here - half) / (here - beyond) - max_half_px;
     }
     return found;
@@ -88,12 +107,14 @@ std::optional<Sides> sides_of(const std::vector<double>& profile, double reach_p
 }
 
 /// Standard deviation of a profile's light about its middle.
-double spread_px(const std::vector<double>& profile, const Sides& sides) {
+double spread_px(ProfileAcross& profile, const Sides& sides) {
   const double middle = 0.5 * (sides.first_px + sides.last_px), reach = 1.2 * sides.width_px();
   double sum = 0.0, square = 0.0;
-  for (int i = 0; i < int(profile.size()); ++i) {
-    const double off = i - max_half_px - middle, light = profile[std::size_t(i)];
-    if (!(std::abs(off) <= reach) || !(light > 0.1 * sides.max_e)) continue;
+  for (int i = 0; i < profile.size(); ++i) {
+    const double off = i - max_half_px - middle;
+    if (!(std::abs(off) <= reach)) continue;
+    const double light = profile[i];
+    if (!(light > 0.1 * sides.max_e)) continue;
     sum += light;
     square += light * off * off;
   }
@@ -101,7 +122,7 @@ double spread_px(const std::vector<double>& profile, const Sides& sides) {
 }
 
 /// Whether there is more light between the sides than two lines of the PSF's width would leave.
-bool has_no_gap(const std::vector<double>& profile, const Sides& sides, double fwhm_px) {
+bool has_no_gap(ProfileAcross& profile, const Sides& sides, double fwhm_px) {
   constexpr double least_apart = 1.1;   // in FWHM: nearer ones leave no gap
   constexpr double sampling_px2 = 1.0;  // pixels are taken at the nearest place, which widens
   const double apart = sides.width_px() / std::sqrt(fwhm_px * fwhm_px + sampling_px2) - 1;
@@ -110,12 +131,12 @@ bool has_no_gap(const std::vector<double>& profile, const Sides& sides, double f
   double min_e = sides.max_e;
   for (int i = int(std::ceil(sides.first_px + fwhm_px / 2));
        i <= int(std::floor(sides.last_px - fwhm_px / 2)); ++i)
-    min_e = std::min(min_e, profile[std::size_t(i + max_half_px)]);
+    min_e = std::min(min_e, profile[i + max_half_px]);
   return min_e > 0.5 * (1 + of_pair) * sides.max_e;
 }
 
 /// Whether there is neither light nor a lack of it beside a line, as there is beside an edge.
-bool is_alone(const std::vector<double>& profile, const Sides& sides) {
+bool is_alone(ProfileAcross& profile, const Sides& sides) {
   constexpr double most_beside = 0.2;  // light beside the line, over its peak
   for (const int way : {-1, 1}) {
     const double from = (way < 0 ? sides.first_px : sides.last_px) + way * 0.5 * sides.width_px();
@@ -123,8 +144,8 @@ bool is_alone(const std::vector<double>& profile, const Sides& sides) {
     int count = 0;
     for (int k = 0; k < 2 + int(0.5 * sides.width_px()); ++k, ++count) {
       const int i = int(std::lround(from)) + way * k + max_half_px;
-      if (i < 0 || i >= int(profile.size())) return false;
-      sum += profile[std::size_t(i)];
+      if (i < 0 || i >= profile.size()) return false;
+      sum += profile[i];
     }
     if (!(std::abs(sum) < most_beside * count * sides.max_e)) return false;
   }
@@ -143,7 +164,7 @@ std::optional<BroadLine> broad_line(const Scene& scene, const std::vector<Point>
     broad.line = principal_axis(points, broad.line, half_px);
     broad.extent = extent_on(points, broad.line, half_px);
     if (broad.extent.to <= broad.extent.from) return std::nullopt;
-    const auto profile = profile_across(scene, broad.line, broad.extent);
+    ProfileAcross profile(scene, broad.line, broad.extent);
     const auto sides = sides_of(profile, half_px);
     if (!sides || sides->width_px() < min_broadness * fwhm_px) return std::nullopt;
     if (sides->max_e < min_pixel_snr * scene.noise_e_at(broad.line.x, broad.line.y))

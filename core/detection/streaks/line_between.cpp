@@ -108,6 +108,7 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
     add(whole[k], samples[k], 1.0);
   }
   std::vector<Beyond> out;
+  std::vector<double> shares;  // of the light of samples near an end that is beyond it
   std::size_t begin = 0, end = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double at = places[i];
@@ -117,8 +118,11 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
     Beyond b = whole[end];
     b.along_px = at;
     b.width_px = (places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0]) / 2;
+    shares.clear();
     for (std::size_t k = begin; k < end; ++k)
-      add(b, samples[k], normal_below((samples[k].along_px - at) / sigma_px));
+      shares.push_back((samples[k].along_px - at) / sigma_px);
+    normal_below_each(shares);
+    for (std::size_t k = begin; k < end; ++k) add(b, samples[k], shares[k - begin]);
     out.push_back(b);
   }
   return out;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/numeric/quantile.h"
+#include "core/base/numeric/simd_level.h"
 #include "core/detection/curve/streak_light.h"
 #include "core/detection/pixels/detection_limits.h"
 #include "core/detection/source/line_profile.h"
@@ -14,6 +15,7 @@
 #include "core/detection/source/star_hypothesis.h"
 #include "core/detection/streaks/broad_streak.h"
 #include "core/detection/streaks/evenness.h"
+#include "core/detection/streaks/point_kernels.h"
 #include "core/detection/streaks/streaks_beside.h"
 
 namespace dmise {
@@ -28,14 +30,18 @@ constexpr double gap_snr = 6.0;            // to continue beyond a gap
 constexpr double min_rise = 2.0;           // over the scatter of lines beside it, before a fit
 constexpr int max_rounds = 6;              // rounds of fitting and growing
 
+double apart_px(const Point& a, const Point& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
 Line line_through(const Point& a, const Point& b) {
-  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  const double length = apart_px(a, b);
   return {a.x, a.y, (b.x - a.x) / length, (b.y - a.y) / length};
 }
 
 /// Points by coordinates, of which weights are summed along lines.
 struct PointLanes {
-  static constexpr std::size_t block = 64, lanes = 8;
   std::vector<double> x, y, weight;
   std::vector<double> after;  // weights from a block on
 
@@ -46,29 +52,21 @@ struct PointLanes {
       y.push_back(points[i].y);
       weight.push_back(points[i].weight);
     }
-    const std::size_t blocks = (x.size() + block - 1) / block;
-    x.resize(blocks * block), y.resize(blocks * block), weight.resize(blocks * block);
+    const std::size_t blocks = (x.size() + point_block - 1) / point_block;
+    x.resize(blocks * point_block), y.resize(x.size()), weight.resize(x.size());
     after.assign(blocks + 1, 0.0);
     for (std::size_t b = blocks; b-- > 0;) {
       after[b] = after[b + 1];
-      for (std::size_t i = b * block; i < (b + 1) * block; ++i) after[b] += weight[i];
+      for (std::size_t i = b * point_block; i < (b + 1) * point_block; ++i) after[b] += weight[i];
     }
   }
 
   /// Weight of the points within `width_px` of a line; may be less where it is not above `most`.
   double within(const Line& line, double width_px, double most) const {
-    std::array<double, lanes> sums{};
-    double sum = 0.0;
-    for (std::size_t b = 0; b + 1 < after.size() && sum + after[b] > most; ++b) {
-      for (std::size_t i = b * block; i < (b + 1) * block; i += lanes)
-        for (std::size_t k = 0; k < lanes; ++k) {
-          const double off = (y[i + k] - line.y) * line.ux - (x[i + k] - line.x) * line.uy;
-          sums[k] += std::abs(off) < width_px ? weight[i + k] : 0.0;
-        }
-      sum = 0.0;
-      for (const double one : sums) sum += one;
-    }
-    return sum;
+    static const auto weight_within = kernel_of(best_simd_level(), sse2::weight_within,
+                                                avx2::weight_within, avx512::weight_within);
+    const WeighedPoints points{x.data(), y.data(), weight.data(), after.data(), after.size() - 1};
+    return weight_within(points, {line.x, line.y, line.ux, line.uy}, width_px, most);
   }
 };
 
@@ -82,7 +80,7 @@ std::optional<Line> main_line(const std::vector<Point>& points, double width_px,
     for (std::size_t b = a + 1; b < anchors; ++b) {
       const Point& p = points[a * (points.size() - 1) / (anchors - 1)];
       const Point& q = points[b * (points.size() - 1) / (anchors - 1)];
-      if (std::hypot(p.x - q.x, p.y - q.y) < min_px) continue;
+      if (apart_px(p, q) < min_px) continue;
       const Line line = line_through(p, q);
       const double weight = lanes.within(line, width_px, most);
       if (weight > most) {
@@ -93,10 +91,14 @@ std::optional<Line> main_line(const std::vector<Point>& points, double width_px,
   return best;
 }
 
+/// Whether a line may grow across a window that is dark, as by noise alone, and whether it did.
+struct Gaps {
+  bool may_be_crossed = true, were_crossed = false;
+};
+
 /// Extends the line beyond one end while light of about the same level continues, one window at a
-/// time. `across_gaps`: also across one window, which may be dark by noise alone.
-void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level,
-          bool across_gaps) {
+/// time.
+void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level, Gaps& gaps) {
   const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
   int gap = 0;
   while (true) {
@@ -120,8 +122,9 @@ void grow(const Scene& scene, const Line& line, Extent& extent, int way, double 
         extent.to = std::min(last, limit - 1);
       else
         extent.from = std::max(first, 0);
+      gaps.were_crossed |= gap > 0;
       gap = 0;
-    } else if (gap == 0 && across_gaps) {
+    } else if (gap == 0 && gaps.may_be_crossed) {
       gap = window_px;
     } else {
       return;
@@ -245,7 +248,7 @@ std::optional<Source> even_or_flickering(const Scene& scene, const Trail& trail,
 }
 
 /// Alternates fitting and growing until the ends are stable.
-std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps,
+std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, Gaps& gaps,
                                 double model_error = 0.02) {
   std::optional<Source> source;
   for (int round = 0; round < max_rounds; ++round) {
@@ -255,8 +258,8 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
     if (is_hopeless(scene, rough) && !is_lit_throughout(scene, rough)) return std::nullopt;
     if (round == 0 && is_among_others(scene, line, extent, level)) return std::nullopt;
     const Extent before = extent;
-    grow(scene, line, extent, +1, level, across_gaps);
-    grow(scene, line, extent, -1, level, across_gaps);
+    grow(scene, line, extent, +1, level, gaps);
+    grow(scene, line, extent, -1, level, gaps);
     extent = trimmed(scene, line, extent, level);
     if (source && std::abs(extent.from - before.from) <= 2 && std::abs(extent.to - before.to) <= 2)
       break;
@@ -291,12 +294,24 @@ Trail trail_on(const Scene& scene, const Line& line, const Extent& extent) {
   return trail_along(line, extent, median_level(slices(scene, line, extent.from, extent.to, 0.0)));
 }
 
-/// What lies near any of several sources.
+/// Whether anything in the rectangle of a component may lie within a distance of a trail.
+bool may_reach(const Trail& t, double margin_px, const Component& c) {
+  const double cosine = std::abs(std::cos(t.angle_rad)), sine = std::abs(std::sin(t.angle_rad));
+  const double along = t.length_px / 2 + margin_px + 1;
+  const double across = std::abs(t.sagitta_px) + margin_px + 1;
+  const double x = along * cosine + across * sine, y = along * sine + across * cosine;
+  return t.x_px + x >= c.min_x && t.x_px - x <= c.max_x && t.y_px + y >= c.min_y &&
+         t.y_px - y <= c.max_y;
+}
+
+/// What lies near any of several sources, within the rectangle of a component.
 class AroundAny {
  public:
-  AroundAny(const std::vector<Source>& sources, double margin_px) {
-    for (const Source& source : sources)
-      around_.emplace_back(source.trail(), std::max(margin_px, 3 * source.broad_sigma_px + 1.5));
+  AroundAny(const std::vector<Source>& sources, double margin_px, const Component& component) {
+    for (const Source& source : sources) {
+      const double px = std::max(margin_px, 3 * source.broad_sigma_px + 1.5);
+      if (may_reach(source.trail(), px, component)) around_.emplace_back(source.trail(), px);
+    }
   }
   bool has(double x_px, double y_px) const {
     return std::ranges::any_of(around_, [&](const Around& one) { return one.has(x_px, y_px); });
@@ -310,7 +325,7 @@ class AroundAny {
 /// brightest fifth: a star on a streak must not outweigh the streak.
 std::vector<Point> free_points(const Scene& scene, const Component& component, double skirt_px,
                                const std::vector<Source>& found) {
-  const AroundAny streaks(found, skirt_px);
+  const AroundAny streaks(found, skirt_px, component);
   std::vector<Point> points;
   std::vector<double> lights;
   for (const Run& run : component.runs)
@@ -329,7 +344,8 @@ std::vector<Point> free_points(const Scene& scene, const Component& component, d
 std::vector<Source> broad_streak(const Scene& scene, const BroadLine& broad) {
   Scene wide = scene;
   wide.use(PsfField::gaussian(fwhm_before_pixel(broad.sigma_px)));
-  auto source = streak_on(wide, broad.line, broad.extent, true, broad_profile_error);
+  Gaps gaps;
+  auto source = streak_on(wide, broad.line, broad.extent, gaps, broad_profile_error);
   if (!source) return {};
   source->broad_sigma_px = broad.sigma_px;
   return {std::move(*source)};
@@ -361,15 +377,17 @@ void find_long_streaks(const Scene& scene, const Component& component, std::vect
     std::vector<Source> sources;
     if (broad && broad->is_no_pair) sources = broad_streak(scene, *broad);
     if (sources.empty()) {
-      auto source = streak_on(scene, line, {int(*low), int(*high)}, true);
+      Gaps gaps, none{.may_be_crossed = false};
+      auto source = streak_on(scene, line, {int(*low), int(*high)}, gaps);
       // What is uneven with others behind it may be one of a row.
-      if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false);
+      if (!source && gaps.were_crossed)
+        source = streak_on(scene, line, {int(*low), int(*high)}, none);
       sources = streaks_beside(
           scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}));
       if (sources.empty() && source) sources.push_back(std::move(*source));
     }
     if (sources.empty() && broad && !broad->is_no_pair) sources = broad_streak(scene, *broad);
-    const AroundAny streaks(sources, skirt_px);
+    const AroundAny streaks(sources, skirt_px, component);
     std::erase_if(points, [&](const Point& p) {
       return std::abs(line.off(p)) < width_px || streaks.has(p.x, p.y);
     });
