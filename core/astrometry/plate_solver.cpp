@@ -15,7 +15,7 @@ constexpr double width_step = 1.2;
 constexpr double code_tolerance = 0.012;
 constexpr std::size_t pattern_sources = 150;
 constexpr std::size_t quad_neighbours = 6, triangle_neighbours = 12;
-/// Of stars that a frame is expected to show, over those of which patterns are whole in it.
+/// Stars that a frame is expected to show, over those of which patterns are whole in it.
 constexpr double shown_more = 10.0;
 /// A neighbour in the image may be measured fainter by this than its star.
 constexpr double fainter = 0.75;

@@ -6,7 +6,7 @@ namespace dmise {
 namespace {
 
 constexpr std::uint32_t none = ~0U;
-constexpr double max_stars = 400'000.0, max_fainter = 3'000'000.0;  // of the whole sky
+constexpr double max_stars = 400'000.0, max_fainter = 3'000'000.0;  // in the whole sky
 constexpr std::size_t bright_neighbours = 5, fainter_neighbours = 4;
 
 /// The nearest stars that are not fainter, by rising distance.

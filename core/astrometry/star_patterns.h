@@ -133,8 +133,9 @@ class PatternCache {
   /// Uses at least the stars up to a rank in brightness, and at most 400,000. `sky` must be of the
   /// same catalogue each time.
   const PatternIndex& whole_sky(const PlateSky& sky, double rank);
-  /// Of the stars beyond the 400,000 brightest, at most to the 3 millionth: frames narrower than a
-  /// degree show whole patterns of these alone. Null if the rank or the catalogue ends before.
+  /// Patterns of the stars beyond the 400,000 brightest, at most to the 3 millionth: frames
+  /// narrower than a degree show whole patterns of these alone. Null if the rank or the catalogue
+  /// ends before.
   const PatternIndex* fainter(const PlateSky& sky, double rank);
 
  private:

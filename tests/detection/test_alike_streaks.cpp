@@ -90,7 +90,7 @@ TEST(AlikeStreaks, BendToOneSide) {
   EXPECT_LE(alike ? alike->count : 0u, 3u);
 }
 
-/// Of a camera whose mount is not known and which says that it follows the stars.
+/// A frame of a camera whose mount is not known and which says that it follows the stars.
 SimulatedFrame empty_frame(unsigned seed) {
   FrameHeader header = camera_header(size, size, 5000, 0, 5, false);
   header.mount = "unknown";

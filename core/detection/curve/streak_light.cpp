@@ -138,7 +138,7 @@ BinEquations bin_equations(const StreakLight& light) {
 struct SolvedBins {
   BandedMatrix factor;
   std::vector<double> by_background;  // light by a background of 1
-  double weight = 0.0;                // of the background
+  double weight = 0.0;                // the background's own
   BinnedLight light;                  // without errors; empty: there is no solution
 };
 

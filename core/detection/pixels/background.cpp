@@ -68,7 +68,7 @@ class Window {
   const std::vector<std::uint32_t>& histogram_;
   std::size_t from_ = 0, to_ = 0;
   std::size_t median_ = 0;  // bin of the median before
-  std::int64_t below_ = 0;  // of the window, in bins before that one
+  std::int64_t below_ = 0;  // pixels of the window in bins before that one
   std::int64_t count_ = 0, sum_ = 0, squares_ = 0;
 };
 

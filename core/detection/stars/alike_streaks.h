@@ -11,7 +11,7 @@ namespace dmise {
 /// What streaks of a frame have in common.
 struct AlikeStreaks {
   PixelPosition trail;    // from end to end [px], up to its sign
-  std::size_t count = 0;  // of streaks
+  std::size_t count = 0;  // streaks that are alike
 };
 
 /// The most streaks that agree in length, direction and bend to their errors, if they are more than

@@ -61,7 +61,7 @@ class ProfileAcross {
   Line line_;
   Extent seen_;
   std::vector<std::optional<double>> light_e_;
-  std::vector<double> places_e_;  // of the line that is measured
+  std::vector<double> places_e_;  // light along the line that is measured
 };
 
 /// What half of a profile's greatest light is between.

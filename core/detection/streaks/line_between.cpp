@@ -108,7 +108,7 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
     add(whole[k], samples[k], 1.0);
   }
   std::vector<Beyond> out;
-  std::vector<double> shares;  // of the light of samples near an end that is beyond it
+  std::vector<double> shares;  // light beyond an end, for samples near it
   std::size_t begin = 0, end = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double at = places[i];

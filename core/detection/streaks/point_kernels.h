@@ -11,7 +11,7 @@ inline constexpr std::size_t point_block = 64;
 /// Points by coordinates, in whole blocks. The last one is filled with points of weight 0.
 struct WeighedPoints {
   const double *x = nullptr, *y = nullptr, *weight = nullptr;
-  const double* after = nullptr;  // of each block, the weights from it on; 0 behind the last
+  const double* after = nullptr;  // for each block, the weights from it on; 0 behind the last
   std::size_t blocks = 0;
 };
 
