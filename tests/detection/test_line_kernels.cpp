@@ -111,10 +111,11 @@ TEST(LineKernels, ABandHasTheSumsOfItsLinesOnEveryInstructionSet) {
     for (const LineSamples& line : lines_in(frame, true))
       for (const int reach : {0, 9, 150}) {
         LineBand of_first, band;
-        sse2::sum_band(line, of_first.of(reach));
+        const BandSums sums = of_first.of(reach);
+        sse2::sum_band(line, sums);
         for (int offset = -reach; offset <= reach; ++offset) {
           const Expected right = expected(line, offset);
-          const auto at = std::size_t(reach + offset);
+          const std::size_t at = sums.place_of(reach + offset);
           ASSERT_EQ(of_first.samples[at], right.samples);
           ASSERT_NEAR(double(of_first.sum[at]) / (1 << BandSums::bits), right.sum,
                       62.0 / (1 << BandSums::bits) * right.samples + 1e-9);
@@ -123,6 +124,11 @@ TEST(LineKernels, ABandHasTheSumsOfItsLinesOnEveryInstructionSet) {
           kernels.sum_band(line, band.of(reach));
           EXPECT_EQ(band.sum, of_first.sum);
           EXPECT_EQ(band.samples, of_first.samples);
+          kernels.sum_band(line, band.of(reach, false));
+          for (int k = 0; k <= 2 * reach; k += 2) {
+            EXPECT_EQ(band.sum[sums.place_of(k)], of_first.sum[sums.place_of(k)]);
+            EXPECT_EQ(band.samples[sums.place_of(k)], of_first.samples[sums.place_of(k)]);
+          }
         }
       }
   }

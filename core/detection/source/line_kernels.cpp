@@ -81,20 +81,36 @@ DMISE_INLINE int add_along(const LineSamples& line, int k, SampleSum& out) {
 #endif
 
 using I16 = std::int16_t __attribute__((vector_size(DMISE_SIMD_BYTES)));
-using I8 = std::int8_t __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
+using I8 = std::int8_t __attribute__((vector_size(DMISE_SIMD_BYTES)));
 constexpr int shorts = DMISE_SIMD_BYTES / 2;
 constexpr int max_rows = 32;  // sums over as many fit into 16 bits
 static_assert(31 * (1 << BandSums::bits) * max_rows < 32768);
-static_assert(BandSums::block % shorts == 0 && shorts < BandSums::spare);
+static_assert(BandSums::block % (2 * shorts) == 0 && shorts < BandSums::spare);
 
-DMISE_INLINE void add_row(const std::int8_t* at, std::int16_t weight, const BandSums& band) {
-  std::int16_t *const part = band.part, *const count = band.part_count;
-  for (int i = 0; i < band.width; i += shorts) {
-    const I16 a = __builtin_convertvector(load<I8>(at + i), I16);
-    const I16 b = __builtin_convertvector(load<I8>(at + i + 1), I16);
-    const I16 seen = (a != 0) & (b != 0);
-    const I16 value = ((a << BandSums::bits) + (b - a) * weight) & seen;
-    store(part + i, load<I16>(part + i) + value);
+/// Values between two pixels beside each other, which are the bytes of each lane; `weight` is that
+/// of the second.
+DMISE_INLINE I16 between(I16 pixels, std::int16_t weight) {
+#if defined(__AVX2__)
+  const I16 weights = I16{} + std::int16_t(weight << 8 | ((1 << BandSums::bits) - weight));
+#if defined(__AVX512F__)
+  return (I16)_mm512_maddubs_epi16((__m512i)weights, (__m512i)pixels);
+#else
+  return (I16)_mm256_maddubs_epi16((__m256i)weights, (__m256i)pixels);
+#endif
+#else
+  const I16 a = (pixels << 8) >> 8, b = pixels >> 8;
+  return (a << BandSums::bits) + (b - a) * weight;
+#endif
+}
+
+/// Adds a row of pixels to every second line from the one that begins at the first pixel on.
+DMISE_INLINE void add_row(const std::int8_t* at, std::int16_t weight, int lines, std::int16_t* part,
+                          std::int16_t* count) {
+  for (int i = 0; i < lines; i += shorts) {
+    const I16 pixels = load<I16>(at + 2 * i);
+    const I8 lit = bits<I8>(pixels) != 0;
+    const I16 seen = bits<I16>(lit) == -1;
+    store(part + i, load<I16>(part + i) + (between(pixels, weight) & seen));
     store(count + i, load<I16>(count + i) - seen);
   }
 }
@@ -142,7 +158,9 @@ void sum_band(const LineSamples& line, const BandSums& band) {
       __builtin_memset(band.row, 0, std::size_t(band.width + BandSums::spare));
       __builtin_memcpy(band.row + (begin - first), pixels + begin, std::size_t(end - begin));
     }
-    add_row(at, weight, band);
+    const int half = band.width / 2;
+    add_row(at, weight, half, band.part, band.part_count);
+    if (band.has_odd) add_row(at + 1, weight, half, band.part + half, band.part_count + half);
     if (++rows % max_rows == 0) gather_parts(band);
   }
   gather_parts(band);

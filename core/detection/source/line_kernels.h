@@ -27,16 +27,23 @@ struct SampleSum {
 };
 
 /// Lines beside each other, of the same rows: one begins at each pixel from `reach` before a line
-/// to `reach` after it. Arrays have `width` elements, which are 0 at first.
+/// to `reach` after it. Arrays have `width` elements, which are 0 at first: every second line from
+/// the first on, then, unless they are left out, those between.
 struct BandSums {
   static constexpr int bits = 5;    // fractional ones
-  static constexpr int block = 32;  // `width` is a multiple of it
+  static constexpr int block = 64;  // `width` is a multiple of it
   static constexpr int spare = 64;  // pixels that are read after the last, for which `row` has room
 
   int reach = 0, width = 0;
+  bool has_odd = true;  // whether lines between every second one are summed
   std::int32_t *sum = nullptr, *samples = nullptr;      // by line; sums in units of 2^-bits
   std::int16_t *part = nullptr, *part_count = nullptr;  // sums of some rows; 0 afterwards
   std::int8_t* row = nullptr;                           // pixels, with 0 beside the frame
+
+  /// Place of a line in the arrays.
+  std::size_t place_of(int line) const {
+    return std::size_t(line / 2) + (line % 2 != 0 ? std::size_t(width / 2) : 0);
+  }
 };
 
 #define DMISE_LINE_KERNELS(level)                                 \

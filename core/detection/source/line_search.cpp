@@ -241,7 +241,7 @@ Trail climbed(const FilteredFrame& frame, const Trail& start, double min_snr) {
   return best.trail;
 }
 
-BandSums LineBand::of(int reach) {
+BandSums LineBand::of(int reach, bool has_odd) {
   const int width = (2 * reach + BandSums::block) / BandSums::block * BandSums::block;
   const auto size = std::size_t(width);
   sum.assign(size, 0);
@@ -251,6 +251,7 @@ BandSums LineBand::of(int reach) {
   row.assign(size + BandSums::spare, 0);
   return {.reach = reach,
           .width = width,
+          .has_odd = has_odd,
           .sum = sum.data(),
           .samples = samples.data(),
           .part = part.data(),
@@ -277,7 +278,11 @@ ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turn
   static const auto sum_band =
       kernel_of(best_simd_level(), sse2::sum_band, avx2::sum_band, avx512::sum_band);
   const bool together = step <= widest_step;
-  if (together) sum_band(line, band.of(lines * step));
+  BandSums sums;
+  if (together) {
+    sums = band.of(lines * step, step % 2 != 0);
+    sum_band(line, sums);
+  }
   std::vector<double> snr;
   snr.reserve(std::size_t(2 * lines + 1));
   for (int k = -lines; k <= lines; ++k) {
@@ -285,7 +290,7 @@ ParallelLines parallel_lines(const FilteredFrame& frame, const TurnedFrame& turn
     double sum;
     int samples;
     if (together) {
-      const auto at = std::size_t((lines + k) * step);
+      const std::size_t at = sums.place_of((lines + k) * step);
       sum = double(band.sum[at]) / (1 << BandSums::bits);
       samples = band.samples[at];
     } else {

@@ -39,7 +39,8 @@ struct LineBand {
   std::vector<std::int16_t> part, part_count;
   std::vector<std::int8_t> row;
 
-  BandSums of(int reach);
+  /// `has_odd`: whether lines between every second one are summed.
+  BandSums of(int reach, bool has_odd = true);
 };
 
 /// Lines parallel to a trail: the median of their SNRs, at least 0, and their scatter, at least 1.

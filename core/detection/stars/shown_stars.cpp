@@ -31,16 +31,52 @@ struct Expected {
 
   auto operator<=>(const Expected&) const = default;
 };
-using Rows = std::vector<Expected>;
+
+/// Stars in bands of columns, by rows.
+class Rows {
+ public:
+  Rows(const std::vector<ShownStar>& stars, int columns)
+      : last_(std::max(columns - 1, 0) / band_px), bands_(std::size_t(last_) + 1) {
+    for (std::size_t i = 0; i < stars.size(); ++i) {
+      const auto x = float(stars[i].trail.x_px), y = float(stars[i].trail.y_px);
+      bands_[std::size_t(band_of(x))].push_back({y, x, std::uint32_t(i)});
+    }
+    for (auto& band : bands_) std::sort(band.begin(), band.end());
+  }
+
+  /// The stars in a rectangle, by rows.
+  const std::vector<Expected>& within(float left, float right, float top, float bottom) {
+    found_.clear();
+    const int first = band_of(left), last = band_of(right);
+    for (int b = first; b <= last; ++b) {
+      const auto& band = bands_[std::size_t(b)];
+      auto star = std::ranges::lower_bound(band, top, {}, &Expected::y_px);
+      for (; star != band.end() && star->y_px <= bottom; ++star)
+        if (star->x_px >= left && star->x_px <= right) found_.push_back(*star);
+    }
+    if (first < last) std::sort(found_.begin(), found_.end());
+    return found_;
+  }
+
+ private:
+  static constexpr int band_px = 128;
+
+  int band_of(float x_px) const {
+    return int(std::clamp(x_px / float(band_px), 0.0F, float(last_)));
+  }
+
+  int last_;
+  std::vector<std::vector<Expected>> bands_;
+  std::vector<Expected> found_;
+};
 
 /// Calls visit(star) for the stars with light in an image, except the star `own`.
 template <class Visit>
-void for_neighbours(const std::vector<ShownStar>& stars, const Rows& rows, const StarImage& image,
+void for_neighbours(const std::vector<ShownStar>& stars, Rows& rows, const StarImage& image,
                     float reach_px, std::size_t own, const Visit& visit) {
-  const float left = float(image.x0) - reach_px, right = float(image.x1) + reach_px;
-  auto row = std::ranges::lower_bound(rows, float(image.y0) - reach_px, {}, &Expected::y_px);
-  for (; row != rows.end() && row->y_px <= float(image.y1) + reach_px; ++row)
-    if (row->x_px >= left && row->x_px <= right && row->star != own) visit(stars[row->star]);
+  for (const Expected& near : rows.within(float(image.x0) - reach_px, float(image.x1) + reach_px,
+                                          float(image.y0) - reach_px, float(image.y1) + reach_px))
+    if (near.star != own) visit(stars[near.star]);
 }
 
 /// Fits stars one after the other.
@@ -53,7 +89,7 @@ class StarFitter {
         beside_(scene.counts.columns, scene.counts.rows) {}
 
   /// Fits a star whose light is at least `least` of what is expected. Returns whether it could.
-  bool fit(std::vector<ShownStar>& stars, const Rows& rows, std::size_t i, double least) {
+  bool fit(std::vector<ShownStar>& stars, Rows& rows, std::size_t i, double least) {
     ShownStar& star = stars[i];
     const double sigma_px = scene_.psf.sigma_at({star.trail.x_px, star.trail.y_px});
     image_.draw_with_slopes(star.trail, sigma_px, star.flux_e / star.noise_e, fitted_noise);
@@ -154,11 +190,7 @@ std::vector<ShownStar> shown_stars(const Scene& scene, const StarAgreement& agre
     stars.push_back({scene.star_trail(at.x_px, at.y_px), scene.noise_e_at(at.x_px, at.y_px),
                      light.middle * star.signal_e, light.scatter});
   }
-  Rows rows;
-  rows.reserve(stars.size());
-  for (std::size_t i = 0; i < stars.size(); ++i)
-    rows.push_back({float(stars[i].trail.y_px), float(stars[i].trail.x_px), std::uint32_t(i)});
-  std::sort(rows.begin(), rows.end());
+  Rows rows(stars, scene.counts.columns);
   StarFitter fitter(scene, agreement.seen().scatter_px);
   const double unit = std::sqrt(kernel_square_sum(scene.sigma_px));
   for (std::size_t i = 0; i < stars.size(); ++i) {

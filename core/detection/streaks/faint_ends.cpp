@@ -59,8 +59,10 @@ std::optional<Trail> other_ends(const Scene& scene, const Source& source) {
     const double last_px = between.middle_px() + between.length_px() / 2 - t.length_px / 2;
     const bool is_here = std::max(std::abs(first_px), std::abs(last_px)) < near_px;
     double& odds = is_here ? here : most;
-    if (!(between.log_odds() > odds)) return;
-    odds = between.log_odds();
+    if (!between.may_exceed(odds)) return;
+    const double found = between.log_odds();
+    if (!(found > odds)) return;
+    odds = found;
     if (is_here) return;
     best = line;
     best.x_px += between.middle_px() * std::cos(line.angle_rad);
@@ -182,6 +184,7 @@ std::optional<EndErrors> errors_of_faint_ends(const Scene& scene, const Source& 
   double most = -HUGE_VAL, all = 0.0;  // sums are in units of exp(most)
   for_pairs_of_ends(
       scene, source, [&](const Trail& line, const LineBetween& between, double pairs_px2) {
+        if (!between.may_exceed(most - negligible)) return;
         const double odds = between.log_odds();
         if (!(odds > most - negligible)) return;
         if (odds > most) {

@@ -141,8 +141,8 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   if (!sloped) {
     level_ = even;
     level2_ = 1 / square[0];
-    const double gain = light * even;
-    log_odds_ = 0.5 * gain - 0.5 * std::log(square[0] * gain * gain);
+    gain_ = light * even;
+    volume_ = square[0] * gain_ * gain_;
     return;
   }
   // Level, and slope times level with the slope's prior.
@@ -162,7 +162,8 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   both_ = -cross * inverse;
   tilt2_ = square[0] * inverse;
   const double flat = even * light * even;
-  log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * flat * flat);
+  gain_ = level_ * light + tilted * turned;
+  volume_ = determinant * flat * flat;
 }
 
 void LineBetween::add_to(EndErrors& errors, const Trail& trail, double turn_rad,

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/detection/source/end_errors.h"
@@ -36,14 +38,24 @@ class LineBetween {
   /// Logarithm of the probability density of both ends, where all ends, light, offsets and
   /// directions of the line are equally likely; -infinity if there is no light. Offset and
   /// direction are free by 1 / (SNR^2 length), and the light is length times level.
-  double log_odds() const { return log_odds_; }
+  double log_odds() const { return 0.5 * gain_ - 0.5 * std::log(volume_); }
+  /// Whether they may be above some odds: false is sure, without a logarithm.
+  bool may_exceed(double odds) const {
+    constexpr double ln2 = 0.6931471805599453, rounding = 1e-9, min_volume = 1e-300;
+    if (!(volume_ > min_volume)) return true;
+    // At least the logarithm to 2 of a number is its exponent plus its fraction.
+    const auto word = std::bit_cast<std::uint64_t>(volume_);
+    const double lower = double(std::int64_t(word)) * 0x1p-52 - 1023.0;
+    const double upper = 0.5 * gain_ - 0.5 * ln2 * lower;
+    return !(upper + rounding * (std::abs(upper) + std::abs(gain_)) + rounding < odds);
+  }
   /// Adds `likely` times the products of its differences from a trail, from which its line is
   /// turned by `turn_rad`.
   void add_to(EndErrors& errors, const Trail& trail, double turn_rad, double likely) const;
 
  private:
   double middle_px_, length_px_;
-  double log_odds_ = -HUGE_VAL;
+  double gain_ = -HUGE_VAL, volume_ = 1.0;          // log_odds is half of the gain less log(volume)
   double level_ = 0.0, slope_ = 0.0;                // electrons per px, relative
   double level2_ = 0.0, both_ = 0.0, tilt2_ = 0.0;  // covariance of level and slope times level
 };
