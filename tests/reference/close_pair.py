@@ -12,11 +12,12 @@ every four minutes. A second satellite, half a magnitude fainter, is near it. Mo
   ahead    it stays ahead on the orbit at the separation
   ellipse  it goes round on the natural ellipse of a revolution, `separation` ahead and behind and half of that up and down: seen from the
            ground, both pass each other
-  unknown  as ahead, but the fusion node doesn't know that there is a second satellite
-The fusion node knows an element set of each, wrong by 500 m along the orbit and 200 m across it (1 sigma), another in each night: about which
-is which it knows nothing at 1 km. The stars are those of the sky to V = 16 and trail.
-A night is kept if there are two confirmed tracks, no more, each from the first quarter of an hour (an hour for an unknown one) to the last, and none takes detections of the
-other object three times in a row (a swap). The object of a detection is that of `dmise score`.
+  unknown  as ahead, but the fusion node doesn't know that there is a second satellite; 2 hours with an exposure a minute
+The fusion node knows an element set of each, wrong by 500 m along the orbit and 200 m across it (1 sigma), another in each night: near
+each other which is which is a guess. The stars are those of the sky to V = 16 and trail.
+A night is kept if there are two confirmed tracks, no more, each from a quarter of an hour after both are first seen apart (an hour for an
+unknown one) to the last quarter, and none takes detections of the other object three times in a row (a swap). The object of a detection is
+that of `dmise score`.
 """
 
 import argparse
@@ -37,7 +38,8 @@ DOCUMENT = referee.SOURCE / "docs/models/fusion.md"
 CHIEF, DEPUTY = "GOES 15", "neighbour"
 LINE1 = "1 36411U 10008A   18020.04261932  .00000091  00000-0  00000-0 0  9992"
 LINE2 = "2 36411   0.0777 254.7228 0001628 344.3928 120.8530  1.00259669 28904"
-HOURS, CADENCE_S, EXPOSURE_S, PIXELS = 8, 240, 2, 96
+EXPOSURE_S, PIXELS = 2, 96
+NIGHTS = {"ahead": (8, 240), "ellipse": (8, 240), "unknown": (2, 60)}  # hours, cadence [s]
 ARCSEC_PER_PX = math.degrees(9e-6 / 3.25) * 3600
 AXIS_M, RANGE_M = 42.166e6, 37.0e6
 EDGE_S, SWAP_RUN = 900, 3
@@ -112,7 +114,8 @@ def draw(dmise, directory, kind, fwhm_arcsec, separation_m, seed, fits=False):
             sets += [name, *element_set(number, place_m + random.normal(0, ALONG_SIGMA_M), random.normal(0, ACROSS_SIGMA_M))]
     (directory / "believed.tle").write_text("\n".join(sets) + "\n")
     scenario = directory / "pair.yaml"
-    scenario.write_text(SCENARIO.format(duration=HOURS * 3600, cadence=CADENCE_S, exposure=EXPOSURE_S, seed=seed, chief=CHIEF, deputy=DEPUTY, line1=LINE1, line2=LINE2,
+    hours, cadence_s = NIGHTS[kind]
+    scenario.write_text(SCENARIO.format(duration=hours * 3600, cadence=cadence_s, exposure=EXPOSURE_S, seed=seed, chief=CHIEF, deputy=DEPUTY, line1=LINE1, line2=LINE2,
                                         motion=motion, pixels=PIXELS, fwhm=fwhm_arcsec / ARCSEC_PER_PX, fits=str(fits).lower()))
     done = subprocess.run([dmise, "run", scenario, "--out", directory / "run"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -153,14 +156,18 @@ def judge_night(dmise, kind, run):
     owner = {r["detection"]: r["id"] for r in rows if r["fate"] == "found"}
     found = collections.Counter(r["frame"] for r in rows if r["fate"] == "found")
     snr = [float(r["measured_snr"]) for r in rows if r["fate"] == "found"]
-    tracks, status = collections.defaultdict(list), {}
+    tracks, status, ends_s = collections.defaultdict(list), {}, {}
     for state in lines_of(run / "tracks.jsonl"):
+        if state["status"] != "lost":
+            ends_s[state["id"]] = state["last_seen_ns"] / 1e9
         tracks[state["id"]] += [(state["time_ns"], owner.get(name)) for name in state["associated"]]
         if status.get(state["id"]) != "confirmed":
             status[state["id"]] = state["status"]
     confirmed = [t for t in tracks if status[t] == "confirmed"]
-    end_s = HOURS * 3600
-    spans = [(min(s for s, _ in tracks[t]) / 1e9, max(s for s, _ in tracks[t]) / 1e9) for t in confirmed]
+    hours, cadence_s = NIGHTS[kind]
+    end_s = hours * 3600
+    both_s = cadence_s * min((int(frame) for frame, n in found.items() if n == 2), default=0)  # from which both are seen
+    spans = [(min(s for s, _ in tracks[t]) / 1e9 - both_s, ends_s[t]) for t in confirmed]
     begin_s = BEGIN_S[kind]
     whole = sum(first < begin_s and last > end_s - EDGE_S for first, last in spans)
     owners = [[o for _, o in sorted(tracks[t], key=lambda x: x[0]) if o] for t in confirmed]
