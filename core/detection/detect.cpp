@@ -114,8 +114,10 @@ bool is_row_of_stars(const Scene& scene, const Source& source) {
 bool is_lost_in_its_errors(const Scene& scene, const FrameHeader& header, Source source) {
   if (!source.streak) return false;
   if (header.detector) add_column_noise(source, header.detector->column_noise_e, scene.sigma_px);
-  return source.snr() < detection_limits::min_published_snr &&
-         template_snr(scene, source.trail()) < detection_limits::sure_snr;
+  if (source.snr() >= detection_limits::min_published_snr) return false;
+  const bool by_pixels = !header.detector && source.snr() >= detection_limits::min_sure_snr;
+  return template_snr(scene, source.trail()) <
+         (by_pixels ? detection_limits::sure_snr_of_pixels : detection_limits::sure_snr);
 }
 
 /// Adds the errors of the ends to a source; false if its light is then not sure.
@@ -161,11 +163,23 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
   for (Source& source : judged.sources) extend(scene, filtered, source);
   judged.star_like += std::uint32_t(std::erase_if(
       judged.sources, [&](const Source& source) { return is_row_of_stars(scene, source); }));
-  for (std::size_t i = 0; i < components.size(); ++i)
-    if (judged.reach_px[i]) hide(filtered, components[i], *judged.reach_px[i]);
+  std::vector<const Component*> parts;  // components that may be parts of faint streaks
+  const auto hide_component = [&](const Component& component) {
+    const auto& reach_px = judged.reach_px[std::size_t(&component - components.data())];
+    if (reach_px) hide(filtered, component, *reach_px);
+  };
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    if (!known && !judged.gave_source[i] && may_be_part_of_streak(components[i]))
+      parts.push_back(&components[i]);
+    else
+      hide_component(components[i]);
+  }
   for (const auto& area : background.bent_cells(detection_limits::max_bend_in_noise))
     for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
   if (!known) filtered.flatten(threads);
+  for (Source& source : streaks_through(scene, filtered, parts))
+    judged.sources.push_back(std::move(source));
+  for (const Component* part : parts) hide_component(*part);
   for (Source& source : find_faint_streaks(scene, filtered, threads))
     judged.sources.push_back(std::move(source));
   const std::vector<Source> others = judged.sources;
@@ -241,7 +255,7 @@ Found found_by(const FrameHeader& header, const CountImage& counts, const PixelM
 
 /// Streaks that may be trails of stars, though a header tells of others or of none.
 std::optional<AlikeStreaks> unexpected_trails(const FrameHeader& header, const Found& found) {
-  constexpr std::size_t most_others = 10;  // sources like stars, for each streak
+  constexpr std::size_t most_others = 100;  // sources like stars, for each streak
   if (!is_of_unknown_mount(header)) return std::nullopt;
   auto alike = alike_streaks(found.sources);
   if (alike && found.result.report.star_like > most_others * alike->count) alike.reset();

@@ -11,6 +11,8 @@ inline constexpr double min_light_snr = 3.0;  // minimum SNR of the flux with er
 // A streak's minimum SNR with errors of its ends and of columns, and an SNR by the matched filter
 // that no noise reaches.
 inline constexpr double min_published_snr = 4.0, sure_snr = 15.0;
+// The latter of a camera of which no noise of columns is known, and what the first must then be.
+inline constexpr double sure_snr_of_pixels = 9.0, min_sure_snr = 2.0;
 // Minimum difference between a source's trail and a star's.
 inline constexpr double min_difference_px = 1.5;
 // Minimum SNR of a streak against the scatter of stars beside it.

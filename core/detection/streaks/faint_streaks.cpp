@@ -40,6 +40,10 @@ constexpr double bright_arc_px = 15.0, bright_arc_snr = 12.0;  // and with this 
 constexpr double min_climb_snr = 3.0;  // from which on a climb moves ends and bend, too
 // Scatter over noise, and share of hidden pixels, that any cell has by chance.
 constexpr double usual_scatter = 0.05, usual_hidden = 0.1;
+// Limits of a component: greatest peak of a faint streak's part, and by how much SNR^2 along a line
+// through it must exceed that of a star there. More of them are the stars of a crowded field.
+constexpr double max_part_peak_snr = 9.0, min_gain_over_star = 36.0;
+constexpr std::size_t max_parts = 400;
 // Least SNR of 16 px, and by how much it rises with each doubling, to 64 px: longer lines are tried
 // at more places.
 constexpr double short_streak_snr = 6.5, snr_per_doubling = 0.5, shortest_px = 16.0;
@@ -224,6 +228,53 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
   return fit;
 }
 
+/// The best of straight lines of a few lengths and directions through a place.
+Trail rough_line_through(const FilteredFrame& frame, const Trail& place, double sigma_px) {
+  constexpr int directions = 24, offsets = 1;
+  Trail line = place, best = place;
+  double most = 0.0;
+  for (double length_px = 8 * sigma_px; length_px < 130.0 * sigma_px; length_px *= 2)
+    for (int k = 0; k < directions; ++k)
+      for (int offset = -offsets; offset <= offsets; ++offset) {
+        line.length_px = length_px;
+        line.angle_rad = pi * k / directions;
+        line.x_px = place.x_px + 0.4 * offset * length_px * std::cos(line.angle_rad);
+        line.y_px = place.y_px + 0.4 * offset * length_px * std::sin(line.angle_rad);
+        const double snr = snr_along(frame, line);
+        if (!(snr > most)) continue;
+        most = snr;
+        best = line;
+      }
+  return best;
+}
+
+/// The faint streak through a component, if there is one.
+std::optional<Source> streak_through(const Scene& seen, const FilteredFrame& frame,
+                                     const TurnedFrame& turned, const Component& part,
+                                     LineBand& band) {
+  const Trail star = seen.star_trail(part.peak_x, part.peak_y);
+  const Trail rough = rough_line_through(frame, star, seen.sigma_px);
+  const auto gains = [&](double snr, const Trail& line) {
+    return snr * snr - std::pow(star_snr_on(frame, line, star), 2);
+  };
+  if (snr_along(frame, rough) < candidate_snr) return std::nullopt;
+  Trail line = climbed(frame, rough);
+  const LineSum sum = sum_along(frame, line);
+  const double snr = sum.sum / sum.noise;
+  if (sum.samples < min_share * sum.slices || snr < min_streak_snr(line.length_px) ||
+      gains(snr, line) < min_gain_over_star)
+    return std::nullopt;
+  const ParallelLines near = parallel_lines(frame, turned, line, band);
+  if (snr < near.median + min_streak_snr(line.length_px) * near.scatter * crowding(frame, line) *
+                              rise_among_trails(seen, line))
+    return std::nullopt;
+  const float noise_e = std::sqrt(seen.pixel_around(line.x_px, line.y_px).variance_e2);
+  line.flux_e = sum.sum / sum.samples / FilteredFrame::steps * noise_e * line.length_px;
+  auto source = fitted(seen, line, snr);
+  if (source && !is_streak(seen, *source)) source.reset();
+  return source;
+}
+
 }  // namespace
 
 double crowding(const FilteredFrame& frame, const Trail& trail) {
@@ -244,6 +295,32 @@ void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
     if (!more) return;
     source = std::move(*more);
   }
+}
+
+bool may_be_part_of_streak(const Component& component) {
+  return component.peak_snr < max_part_peak_snr;
+}
+
+std::vector<Source> streaks_through(const Scene& scene, FilteredFrame& frame,
+                                    const std::vector<const Component*>& parts) {
+  std::vector<Source> found;
+  if (parts.size() > max_parts) return found;
+  Scene seen = scene;
+  seen.hidden = &frame;
+  TurnedFrame turned(frame);
+  LineBand band;
+  const double margin_px = 2 * scene.sigma_px + 1;
+  for (const Component* part : parts) {
+    const bool is_known = std::ranges::any_of(found, [&](const Source& source) {
+      return Around(source.trail(), margin_px).has(part->peak_x, part->peak_y);
+    });
+    if (is_known) continue;
+    auto source = streak_through(seen, frame, turned, *part, band);
+    if (!source) continue;
+    hide(frame, turned, source->trail(), 4 * scene.sigma_px);
+    for (Source& piece : pieces(scene, std::move(*source))) found.push_back(std::move(piece));
+  }
+  return found;
 }
 
 std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame, Threads& threads) {

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/detection/pixels/components.h"
 #include "core/detection/source/beamlets.h"
 #include "core/detection/source/scene.h"
 
@@ -20,6 +21,14 @@ double min_streak_snr(double length_px);
 /// frame is hidden or the sky scatters more than noise: fainter stars that were not hidden give
 /// sums a longer tail.
 double crowding(const FilteredFrame& frame, const Trail& trail);
+
+/// Whether a component that is no source may be the brightest part of a faint streak.
+bool may_be_part_of_streak(const Component& component);
+
+/// Finds faint streaks of which such components, which are not hidden in `frame`, are parts: light
+/// along a line through one is much more than that of a star there. What it finds is hidden.
+std::vector<Source> streaks_through(const Scene& scene, FilteredFrame& frame,
+                                    const std::vector<const Component*>& parts);
 
 /// Finds streaks that no threshold of single pixels shows, strongest first, from the beamlets of a
 /// frame in which stars and known sources are hidden. What it finds is hidden too.

@@ -84,6 +84,7 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
                         const std::vector<Component>& components, Threads& threads) {
   Judged out;
   out.reach_px.resize(components.size(), int(std::ceil(2 * scene.sigma_px)));
+  out.gave_source.resize(components.size());
   // Where faint stars scatter the sky, a component that is no source is hardly a part of one.
   const auto is_calm = [&](const Component& c) {
     return scene.known && filtered.cell_at(c.peak_x, c.peak_y).scatter < 1.2f;
@@ -109,17 +110,21 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
     find_long_streaks(scene, *component, out.sources);
     if (scene.known && out.sources.size() == before)
       find_beside_stars(scene, filtered, *component, out.sources);
-    if (out.sources.size() > before) continue;
+    const auto number = std::size_t(component - components.data());
+    out.gave_source[number] = out.sources.size() > before;
+    if (out.gave_source[number]) continue;
     ++out.star_like;
-    if (is_calm(*component)) out.reach_px[std::size_t(component - components.data())].reset();
+    if (is_calm(*component)) out.reach_px[number].reset();
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i].sources.empty())
+    const auto number = std::size_t(compacts[i] - components.data());
+    out.gave_source[number] = !found[i].sources.empty();
+    if (out.gave_source[number])
       std::ranges::move(found[i].sources, std::back_inserter(out.sources));
     else if (found[i].star_like)
       ++out.star_like;
     else if (is_calm(*compacts[i]))
-      out.reach_px[std::size_t(compacts[i] - components.data())].reset();
+      out.reach_px[number].reset();
   }
   return out;
 }

@@ -15,6 +15,7 @@ struct Judged {
   // How far each component's light reaches that is not to be searched again [px]; empty where it
   // is, because it is neither a star nor a source.
   std::vector<std::optional<int>> reach_px;
+  std::vector<bool> gave_source;  // one for each component
 };
 
 /// Compact components are classified independently, in parallel; long ones by falling size, so that
