@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base/numeric/assignment.h"
 #include "core/base/units.h"
+#include "core/fusion/frame_pairs.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"
 #include "core/tracking/line_of_light.h"
@@ -95,9 +95,7 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
 
   const double false_per_sr = settings_.false_alarms_per_frame / frame.solid_angle_sr();
   const double p = settings_.detection_probability;
-  const double alone = 2 * std::log(false_per_sr * (1 - p) / p);
-  std::vector<Pairing> pairs;
-  std::vector<double> likelihoods;  // of each pair: the density with which it shows a source [1/sr]
+  FramePairs pairs(p, false_per_sr);
   std::vector<std::pair<SimTime, PredictedDirection>> known(all.size());
   std::vector<signed char> lit(all.size(), -1);
   const auto is_lit = [&](std::size_t k) {
@@ -123,17 +121,11 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
       const Innovation found = innovation_of(from_line, seen);
       if (!(found.d2 < settings_.gate_d2)) continue;
       const double spread = std::log((2 * pi) * (2 * pi) * found.covariance_rad2.determinant());
-      pairs.push_back({row, k, found.d2 + spread + alone});
-      const double exists = all[k].track ? all[k].track->existence() : 1.0;
-      likelihoods.push_back(p * exists * std::exp(-(found.d2 + spread) / 2));
+      pairs.add(row, k, found.d2, spread, all[k].track ? all[k].track->existence() : 1.0);
     }
   }
-  const std::vector<std::size_t> columns = assign(frame.sources.size(), all.size(), pairs);
-  // What else may have made a source: a false alarm, or another object (Musicki & La Scala 2008,
-  // linear multitarget). Where objects are close, a pair is no proof.
-  std::vector<double> others(frame.sources.size(), false_per_sr);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (columns[pairs[i].row] != pairs[i].column) others[pairs[i].row] += likelihoods[i];
+  const std::vector<std::size_t> columns = pairs.assigned(frame.sources.size(), all.size());
+  const std::vector<double> others = pairs.others(columns);
 
   std::vector<bool> found(all.size(), false);
   for (std::size_t row = 0; row < columns.size(); ++row) {
