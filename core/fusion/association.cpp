@@ -3,9 +3,9 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base/numeric/assignment.h"
 #include "core/base/units.h"
 #include "core/fusion/blended_pair.h"
+#include "core/fusion/frame_pairs.h"
 #include "core/fusion/fusion_scene.h"
 #include "core/fusion/sky_cells.h"
 #include "core/tracking/line_of_light.h"
@@ -17,11 +17,11 @@ constexpr double coarse_sigmas = 5.0;       // reach of the coarse search
 constexpr double largest_radius_rad = 0.2;  // tracks that are known worse are not looked for
 constexpr double min_radius_rad = 1e-4;
 constexpr double earth_m = 6.35e6;
-constexpr double burn_probability = 1e-3;   // a manoeuvre since the last arc
-constexpr double edge_px = 4.0;             // within which a source may be missed
-constexpr double least_looked = 0.05;       // probability of detection that makes a look
-constexpr double certain_sigma_rad = 0.01;  // places known better than this can be missed
-constexpr double blend_reach = 1.5;         // resolutions, within which a blend is one source
+const double burn_price = -2 * std::log(1e-3);  // probability of a manoeuvre since the last arc
+constexpr double edge_px = 4.0;                 // within which a source may be missed
+constexpr double least_looked = 0.05;           // probability of detection that makes a look
+constexpr double certain_sigma_rad = 0.01;      // places known better than this can be missed
+constexpr double blend_reach = 1.5;             // resolutions, within which a blend is one source
 
 bool behind_earth(const Vec<Gcrs>& sensor_m, const Vec<Gcrs>& direction, double range_m) {
   const double along = -dot(sensor_m, direction);
@@ -165,9 +165,7 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
 
   const double false_per_sr = settings_.false_alarms_per_frame / frame.solid_angle_sr();
   const double p = settings_.detection_probability;
-  const double alone = 2 * std::log(false_per_sr * (1 - p) / p);
-  std::vector<Pairing> pairs;
-  std::vector<double> likelihoods;  // by pairs: the density with which one shows a source [1/sr]
+  FramePairs pairs(p, false_per_sr);
   std::vector<std::pair<SimTime, PredictedDirection>> known(all.size());
   std::vector<signed char> lit(all.size(), -1);
   const auto is_lit = [&](std::size_t k) {
@@ -196,20 +194,14 @@ void Fusion::associate(Scene& scene, const SensorFrame& frame,
       const Innovation off = innovation_of(from_line, seen);
       if (!(off.d2 < settings_.gate_d2)) continue;
       const double spread = std::log((2 * pi) * (2 * pi) * off.covariance_rad2.determinant());
-      const double exists = all[k].track   ? all[k].track->existence()
-                            : all[k].burnt ? burn_probability
-                                           : 1.0;
-      const double burn = all[k].burnt ? -2 * std::log(burn_probability) : 0.0;
-      pairs.push_back({row, k, off.d2 + spread + alone + burn});
-      likelihoods.push_back(p * exists * std::exp(-(off.d2 + spread) / 2));
+      if (all[k].burnt)
+        pairs.add(row, k, off.d2 + burn_price, spread, 1.0);
+      else
+        pairs.add(row, k, off.d2, spread, all[k].track ? all[k].track->existence() : 1.0);
     }
   }
-  const std::vector<std::size_t> columns = assign(frame.sources.size(), all.size(), pairs);
-  // What else may have made a source: a false alarm, or another object (Musicki & La Scala 2008,
-  // linear multitarget). Where objects are close, a pair is no proof.
-  std::vector<double> others(frame.sources.size(), false_per_sr);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (columns[pairs[i].row] != pairs[i].column) others[pairs[i].row] += likelihoods[i];
+  const std::vector<std::size_t> columns = pairs.assigned(frame.sources.size(), all.size());
+  const std::vector<double> others = pairs.others(columns);
 
   for (std::size_t row = 0; row < columns.size(); ++row) {
     if (blended[row]) continue;

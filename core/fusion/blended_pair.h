@@ -8,8 +8,8 @@ namespace dmise {
 /// What a source that is the light of two objects at once tells of each.
 struct BlendedPair {
   std::array<AngleObservation, 2> parts;  // directions of either, wide enough for both's errors
-  double d2 =
-      0.0;  // chi-square of the source from the predicted centre of light, 2 degrees of freedom
+  // Chi-square of the source from the predicted centre of light, 2 degrees of freedom.
+  double d2 = 0.0;
 };
 
 /// The source lies at the centre of both objects' light, of which the first has `share`, (0, 1). If

@@ -1,5 +1,6 @@
 #include "core/tracking/predict.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
@@ -43,6 +44,52 @@ Innovation innovation_of(const PredictedDirection& predicted, const AngleObserva
   if (!(square > 0) || !std::isfinite(out.d2))
     out.d2 = std::numeric_limits<double>::max();  // a prediction without an error
   out.log_likelihood = -0.5 * out.d2 - std::log(2 * pi) - 0.5 * std::log(std::max(square, 1e-300));
+  return out;
+}
+
+PredictedMotion predict_motion(const OrbitEstimate& estimate, const Vec<Gcrs>& sensor_m,
+                               const Vec<Gcrs>& sensor_m_per_s, SimTime time) {
+  PredictedMotion out{predict_direction(estimate, sensor_m, time), {}};
+  const PredictedDirection& seen = out.direction;
+  out.rate_rad_per_s =
+      seen.rate_rad_per_s -
+      (sensor_m_per_s - seen.direction * dot(sensor_m_per_s, seen.direction)) / seen.range_m;
+  const Eigen::Vector3d towards = eigen_of(seen.direction);
+  const double along_m_per_s = seen.range_rate_m_per_s - dot(sensor_m_per_s, seen.direction);
+  const Eigen::Matrix<double, 2, 3> across = rows_of(sky_tangents(seen.direction)) / seen.range_m;
+  // Rate = across (v - v_sensor), with `across` turning and shrinking as the place moves.
+  Eigen::Matrix<double, 4, 6> h = Eigen::Matrix<double, 4, 6>::Zero();
+  h.block<2, 3>(0, 0) = across;
+  h.block<2, 3>(2, 0) =
+      -(along_m_per_s * across +
+        seen.range_m * across * eigen_of(out.rate_rad_per_s) * towards.transpose()) /
+      seen.range_m;
+  h.block<2, 3>(2, 3) = across;
+  const double dt_s = (time - estimate.state.time).seconds();
+  h.rightCols<3>() += dt_s * h.leftCols<3>();
+  out.covariance = h * estimate.covariance.topLeftCorner<6, 6>() * h.transpose();
+  return out;
+}
+
+MotionInnovation innovation_of(const PredictedMotion& predicted, const SeenMotion& observed) {
+  MotionInnovation out;
+  const Eigen::Matrix<double, 2, 3> axes = rows_of(sky_tangents(predicted.direction.direction));
+  const Eigen::Vector3d expected = eigen_of(predicted.rate_rad_per_s);
+  Eigen::Vector3d rate = eigen_of(observed.rate_rad_per_s);
+  if (rate.dot(expected) < 0) rate = -rate;  // a streak does not tell which end came first
+  out.residual << angles_between(predicted.direction.direction, observed.observation.direction),
+      axes * (rate - expected);
+  Eigen::Matrix4d covariance = predicted.covariance;
+  covariance.topLeftCorner<2, 2>() += covariance_of(observed.observation);
+  const double variance = observed.rate_sigma_rad_per_s * observed.rate_sigma_rad_per_s;
+  covariance.bottomRightCorner<2, 2>() += variance * Eigen::Matrix2d::Identity();
+  const Eigen::LLT<Eigen::Matrix4d> root(covariance);
+  out.d2 = std::numeric_limits<double>::max();
+  if (root.info() != Eigen::Success) return out;  // a prediction without an error
+  const double d2 = out.residual.dot(root.solve(out.residual));
+  if (!std::isfinite(d2)) return out;
+  out.d2 = d2;
+  out.spread = 4 * std::log(2 * pi) + 2 * root.matrixLLT().diagonal().array().log().sum();
   return out;
 }
 

@@ -31,4 +31,30 @@ struct Innovation {
 
 Innovation innovation_of(const PredictedDirection& predicted, const AngleObservation& observed);
 
+/// A motion across the sky that a streak shows beside its direction.
+struct SeenMotion {
+  AngleObservation observation;       // with the velocity of the sensor
+  Vec<Gcrs> rate_rad_per_s;           // rate of the direction as the sensor sees it, or against it
+  double rate_sigma_rad_per_s = 0.0;  // along each axis
+};
+
+/// Where a sensor will see an object, and how fast it moves there.
+struct PredictedMotion {
+  PredictedDirection direction;
+  Vec<Gcrs> rate_rad_per_s;                              // for the sensor with its velocity
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  // east, north; their rates; of the orbit
+};
+
+PredictedMotion predict_motion(const OrbitEstimate& estimate, const Vec<Gcrs>& sensor_m,
+                               const Vec<Gcrs>& sensor_m_per_s, SimTime time);
+
+/// Observed minus predicted direction and rate, the rate with the sign that is nearer.
+struct MotionInnovation {
+  Eigen::Vector4d residual = Eigen::Vector4d::Zero();
+  double d2 = 0.0;      // chi-square of 4 degrees of freedom
+  double spread = 0.0;  // logarithm of the determinant of 2 pi S
+};
+
+MotionInnovation innovation_of(const PredictedMotion& predicted, const SeenMotion& observed);
+
 }  // namespace dmise

@@ -5,6 +5,7 @@
 
 #include "core/base/numeric/rng.h"
 #include "core/base/units.h"
+#include "core/frames/earth_orientation.h"
 #include "core/sky/bodies/shadow.h"
 #include "core/tracking/line_of_light.h"
 
@@ -37,7 +38,9 @@ std::vector<OrbitWatcher> network(const std::vector<NamedSite>& sites,
                      .sigma_rad = 1 * arcsec,
                      .limiting_magnitude = 14,
                      .min_elevation_rad = 20 * deg,
-                     .most_of_a_pass = 3});
+                     .most_of_a_pass = 3,
+                     .exposure_s = 2,
+                     .half_angle_rad = 0.5 * deg});
   return out;
 }
 
@@ -92,44 +95,87 @@ bool WatchedOrbit::sees(const OrbitWatcher& watcher, const Instant& now) const {
          watcher.limiting_magnitude;
 }
 
-std::vector<std::vector<AngleObservation>> WatchedOrbit::passes(
-    const std::vector<OrbitWatcher>& watchers, const Draw& draw) const {
-  std::vector<AngleObservation> all;
+SeenMotion drawn_motion(const OrbitWatcher& watcher, SimTime time, const Vec<Gcrs>& sensor_m,
+                        const Vec<Gcrs>& sensor_m_per_s, const MotionState<Gcrs>& object,
+                        const RngKey& key, std::uint32_t draw) {
+  const double variance = watcher.sigma_rad * watcher.sigma_rad;
+  SeenMotion out{{.time = time, .sensor_m = sensor_m}};
+  out.rate_sigma_rad_per_s = std::sqrt(2.0) * watcher.sigma_rad / watcher.exposure_s;
+  const LineOfLight line = line_of_light(eigen_of(object.position_m),
+                                         eigen_of(object.velocity_m_per_s), eigen_of(sensor_m));
+  const Vec<Gcrs> direction = gcrs_of(line.line_m / line.range_m);
+  const SkyTangents tangents = sky_tangents(direction);
+  const auto scattered = [&](const Vec<Gcrs>& about, double sigma, std::uint32_t word) {
+    return about + sigma * normal_of(rng_word(key, draw, word)) * tangents.east +
+           sigma * normal_of(rng_word(key, draw, word + 1)) * tangents.north;
+  };
+  const Vec<Gcrs> motion = gcrs_of(line.velocity_m_per_s) - sensor_m_per_s;
+  out.rate_rad_per_s = scattered((motion - direction * dot(motion, direction)) / line.range_m,
+                                 out.rate_sigma_rad_per_s, 3);
+  AngleObservation& seen = out.observation;
+  seen.direction = unit(scattered(direction, watcher.sigma_rad, 1));
+  seen.covariance_rad2 = {variance, 0, variance};
+  seen.sensor = watcher.name;
+  seen.sensor_m_per_s = sensor_m_per_s;
+  return out;
+}
+
+std::vector<std::size_t> WatchedOrbit::looks(const OrbitWatcher& watcher) const {
+  std::vector<std::size_t> out, pass;
+  const auto end_pass = [&] {
+    const std::size_t all = pass.size(), wanted = std::size_t(watcher.most_of_a_pass);
+    if (all <= wanted)
+      out.insert(out.end(), pass.begin(), pass.end());
+    else if (watcher.spread)
+      for (std::size_t k = 0; k < wanted; ++k) out.push_back(pass[k * (all - 1) / (wanted - 1)]);
+    else
+      out.insert(out.end(), pass.begin(), pass.begin() + long(wanted));
+    pass.clear();
+  };
+  for (std::size_t i = 0; i < instants_.size(); ++i) {
+    if (!sees(watcher, instants_[i])) continue;
+    if (!pass.empty() && (instants_[i].time - instants_[pass.back()].time).seconds() > gap_s)
+      end_pass();
+    pass.push_back(i);
+  }
+  end_pass();
+  return out;
+}
+
+std::vector<WatchedExposure> WatchedOrbit::exposures(const std::vector<OrbitWatcher>& watchers,
+                                                     const Draw& draw) const {
+  std::vector<WatchedExposure> out;
   for (const OrbitWatcher& watcher : watchers) {
     const RngKey key = rng_key(draw.seed, watcher.name, 0, "watched orbit");
-    const double variance = watcher.sigma_rad * watcher.sigma_rad;
-    int of_pass = 0;
-    double last_s = -1e9;
-    for (std::size_t i = 0; i < instants_.size(); ++i) {
+    for (const std::size_t i : looks(watcher)) {
       const Instant& now = instants_[i];
-      if (!sees(watcher, now)) continue;
-      if (now.time.seconds() - last_s > gap_s) of_pass = 0;
-      last_s = now.time.seconds();
-      const std::uint32_t n = std::uint32_t(i);
-      if (++of_pass > watcher.most_of_a_pass ||
-          uniform_of(rng_word(key, n, 0)) > draw.detection_probability)
-        continue;
-      AngleObservation seen{.time = now.time,
-                            .sensor_m = now.gcrs_from_itrs * itrs_from_geodetic(watcher.site)};
-      const LineOfLight line =
-          line_of_light(eigen_of(now.state.position_m), eigen_of(now.state.velocity_m_per_s),
-                        eigen_of(seen.sensor_m));
-      const Vec<Gcrs> direction = gcrs_of(line.line_m / line.range_m);
-      const SkyTangents tangents = sky_tangents(direction);
-      seen.direction =
-          unit(direction + watcher.sigma_rad * normal_of(rng_word(key, n, 1)) * tangents.east +
-               watcher.sigma_rad * normal_of(rng_word(key, n, 2)) * tangents.north);
-      seen.covariance_rad2 = {variance, 0, variance};
-      seen.sensor = watcher.name;
-      seen.detection_id = watcher.name + "/" + std::to_string(i) + "/0";
-      all.push_back(std::move(seen));
+      WatchedExposure e;
+      e.watcher = &watcher;
+      e.number = std::uint32_t(i);
+      e.time = now.time;
+      e.sensor_m = now.gcrs_from_itrs * itrs_from_geodetic(watcher.site);
+      e.sensor_m_per_s = cross(Vec<Gcrs>{0, 0, earth_turn_rad_per_s}, e.sensor_m);
+      e.sun_m = now.sun_m;
+      e.direction = unit(now.state.position_m - e.sensor_m);
+      if (uniform_of(rng_word(key, e.number, 0)) <= draw.detection_probability) {
+        e.seen =
+            drawn_motion(watcher, now.time, e.sensor_m, e.sensor_m_per_s, now.state, key, e.number);
+        e.seen->observation.detection_id = watcher.name + "/" + std::to_string(i) + "/0";
+      }
+      out.push_back(std::move(e));
     }
   }
-  std::ranges::stable_sort(all, {}, &AngleObservation::time);
+  std::ranges::stable_sort(out, {}, &WatchedExposure::time);
+  return out;
+}
+
+std::vector<std::vector<AngleObservation>> WatchedOrbit::passes(
+    const std::vector<OrbitWatcher>& watchers, const Draw& draw) const {
   std::vector<std::vector<AngleObservation>> out;
-  for (AngleObservation& o : all) {
-    if (out.empty() || (o.time - out.back().back().time).seconds() > gap_s) out.emplace_back();
-    out.back().push_back(std::move(o));
+  for (WatchedExposure& e : exposures(watchers, draw)) {
+    if (!e.seen) continue;
+    if (out.empty() || (e.time - out.back().back().time).seconds() > gap_s) out.emplace_back();
+    out.back().push_back(std::move(e.seen->observation));
   }
   return out;
 }

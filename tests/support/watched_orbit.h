@@ -1,14 +1,16 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/numeric/rng.h"
 #include "core/forces/earth_surroundings.h"
 #include "core/frames/geodesy.h"
 #include "core/orbit/motion_state.h"
 #include "core/photometry/diffuse_sphere.h"
-#include "core/tracking/angle_observation.h"
+#include "core/tracking/predict.h"
 
 namespace dmise {
 
@@ -21,7 +23,24 @@ struct OrbitWatcher {
   double cadence_s = 30.0;
   double min_elevation_rad = 0.0;
   int most_of_a_pass = 1000000;  // exposures
+  bool spread = false;           // from the pass's begin to its end, instead of at once
+  double exposure_s = 20.0;
+  double half_angle_rad = 1.6;  // half of the field
 };
+
+/// An exposure of a watcher with the object in its sky.
+struct WatchedExposure {
+  const OrbitWatcher* watcher = nullptr;
+  std::uint32_t number = 0;  // index of the instant
+  SimTime time;
+  Vec<Gcrs> sensor_m, sensor_m_per_s, direction, sun_m;
+  std::optional<SeenMotion> seen;  // null: missed
+};
+
+/// Draws what a watcher sees of a place and velocity; words of `key` from `draw` on.
+SeenMotion drawn_motion(const OrbitWatcher& watcher, SimTime time, const Vec<Gcrs>& sensor_m,
+                        const Vec<Gcrs>& sensor_m_per_s, const MotionState<Gcrs>& object,
+                        const RngKey& key, std::uint32_t draw);
 
 /// Eight all-sky cameras: 20 s exposures every 30 s to magnitude 7, errors of 20 arcsec. Two
 /// telescopes of 0.4 m, one in either hemisphere: three exposures of a pass at 1 arcsec, as a task
@@ -42,6 +61,9 @@ class WatchedOrbit {
     double detection_probability = 0.83;  // as the score of the all-sky camera has it
     std::uint64_t seed = 1;
   };
+  /// Exposures with the object in the sky, in order of time. They refer to `watchers`.
+  std::vector<WatchedExposure> exposures(const std::vector<OrbitWatcher>& watchers,
+                                         const Draw& draw) const;
   /// Passes, one after another, each in order of time.
   std::vector<std::vector<AngleObservation>> passes(const std::vector<OrbitWatcher>& watchers,
                                                     const Draw& draw) const;
@@ -55,6 +77,8 @@ class WatchedOrbit {
     bool lit = false;
   };
   bool sees(const OrbitWatcher& watcher, const Instant& now) const;
+  /// Instants at which a watcher exposes.
+  std::vector<std::size_t> looks(const OrbitWatcher& watcher) const;
 
   DiffuseSphere sphere_;
   std::vector<Instant> instants_;
