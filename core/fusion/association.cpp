@@ -85,10 +85,9 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
     if (track_of_[i]) continue;
     const auto place = kept_->place(i, scene.time);
     if (!place) continue;
-    const auto& [state, sigma_m] = *place;
+    const auto& [state, sigma_m, burnt_sigma_m] = *place;
     add({.object = i}, state.position_m, state.velocity_m_per_s, sigma_m);
-    add({.object = i, .burnt = true}, state.position_m, state.velocity_m_per_s,
-        sigma_m + kept_->burnt_sigma_m(i, scene.time));
+    add({.object = i, .burnt = true}, state.position_m, state.velocity_m_per_s, burnt_sigma_m);
   }
   for (std::size_t word = 0; word < inside.size(); ++word)
     for (std::uint64_t bits = inside[word]; bits != 0; bits &= bits - 1) {

@@ -24,19 +24,6 @@ void CataloguePrediction::move(SimTime time) {
   if (size() > 0) batch_.propagate(utc_.jd1, utc_.jd2, position_m_, velocity_m_per_s_, code_);
 }
 
-void add_errors(OrbitEstimate& estimate, const Eigen::Vector3d& place_sigma_m) {
-  const Vec<Gcrs> r = estimate.state.position_m, v = estimate.state.velocity_m_per_s;
-  const Eigen::Matrix3d axes = orbit_axes(estimate.state);
-  const double turn_rad_per_s = norm(cross(r, v)) / dot(r, r);
-  const Eigen::Vector3d& place = place_sigma_m;
-  const Eigen::Vector3d rate = turn_rad_per_s * Eigen::Vector3d(place[1], place[0], place[2]);
-  const auto turned = [&](const Eigen::Vector3d& sigma) -> Eigen::Matrix3d {
-    return axes * sigma.array().square().matrix().asDiagonal() * axes.transpose();
-  };
-  estimate.covariance.topLeftCorner<3, 3>() += turned(place);
-  estimate.covariance.block<3, 3>(3, 3) += turned(rate);
-}
-
 double CataloguePrediction::sigma_m(std::size_t i, std::size_t axis) const {
   const MeanElements& e = elements_[i];
   const double age_days = std::fabs(epoch_days_between({e.epoch_jd1, e.epoch_jd2}, utc_));
@@ -50,7 +37,16 @@ double CataloguePrediction::sigma_m(std::size_t i) const {
 OrbitEstimate CataloguePrediction::estimate(std::size_t i) const {
   OrbitEstimate out;
   out.state = {.time = time_, .position_m = position_m(i), .velocity_m_per_s = velocity_m_per_s(i)};
-  add_errors(out, {sigma_m(i, 0), sigma_m(i, 1), sigma_m(i, 2)});
+  const Vec<Gcrs> r = out.state.position_m, v = out.state.velocity_m_per_s;
+  const Eigen::Matrix3d axes = orbit_axes(out.state);
+  const double turn_rad_per_s = norm(cross(r, v)) / dot(r, r);
+  const Eigen::Vector3d place(sigma_m(i, 0), sigma_m(i, 1), sigma_m(i, 2));
+  const Eigen::Vector3d rate = turn_rad_per_s * Eigen::Vector3d(place[1], place[0], place[2]);
+  const auto turned = [&](const Eigen::Vector3d& sigma) -> Eigen::Matrix3d {
+    return axes * sigma.array().square().matrix().asDiagonal() * axes.transpose();
+  };
+  out.covariance.topLeftCorner<3, 3>() = turned(place);
+  out.covariance.block<3, 3>(3, 3) = turned(rate);
   return out;
 }
 

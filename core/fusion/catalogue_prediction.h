@@ -11,10 +11,6 @@
 
 namespace dmise {
 
-/// Adds errors of the place along radius, motion and normal [m, one sigma], and of the velocity
-/// those times the mean motion, with radius and motion exchanged.
-void add_errors(OrbitEstimate& estimate, const Eigen::Vector3d& place_sigma_m);
-
 /// Where the objects of a catalogue are, and how well that is known.
 class CataloguePrediction {
  public:

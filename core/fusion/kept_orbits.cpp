@@ -4,8 +4,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/fusion/catalogue_prediction.h"
-
 namespace dmise {
 namespace {
 
@@ -16,16 +14,7 @@ constexpr double reach_sigmas = 3.0;  // largest manoeuvre that is tried, in its
 // Along the motion a change of velocity moves an object three times as far as it goes in the time.
 constexpr double drift_factor = 3.0;
 
-constexpr double burn_m_per_s = 0.2;  // usual manoeuvres, one sigma
-
-/// Standard deviations of the place of an orbit a time after a change of velocity, along radius,
-/// motion and normal: four times its size over the mean motion, the drift, and once.
-Eigen::Vector3d burn_sigmas_m(const OrbitState& at, double since_s) {
-  const double turn_rad_per_s =
-      norm(cross(at.position_m, at.velocity_m_per_s)) / dot(at.position_m, at.position_m);
-  const double swing_m = burn_m_per_s / turn_rad_per_s;
-  return {4 * swing_m, std::hypot(4 * swing_m, drift_factor * burn_m_per_s * since_s), swing_m};
-}
+constexpr double burn_m_per_s = 0.2;  // usual manoeuvres, one sigma along each axis
 
 /// Whether an orbit explains an arc: without outliers, chi-square within five deviations of its
 /// mean.
@@ -90,10 +79,14 @@ bool KeptOrbits::look_ahead(Kept& kept, SimTime to) {
   auto path = ArcPath::fly(forces_, kept.last->state, {}, end);
   if (!path) return false;
   kept.ahead = std::move(*path);
-  kept.sigma_m.clear();
-  for (SimTime t = from; t < end; t = t + sim_seconds(sigma_step_s))
-    kept.sigma_m.push_back(sigma_of(moved_along(forces_, *kept.ahead, kept.last->covariance, t)));
-  kept.sigma_m.push_back(sigma_of(moved_along(forces_, *kept.ahead, kept.last->covariance, end)));
+  const OrbitEstimate burnt = perhaps_manoeuvred(*kept.last, burn_m_per_s);
+  kept.sigmas.clear();
+  const auto add = [&](SimTime t) {
+    kept.sigmas.push_back({sigma_of(moved_along(forces_, *kept.ahead, kept.last->covariance, t)),
+                           sigma_of(moved_along(forces_, *kept.ahead, burnt.covariance, t))});
+  };
+  for (SimTime t = from; t < end; t = t + sim_seconds(sigma_step_s)) add(t);
+  add(end);
   return true;
 }
 
@@ -103,13 +96,15 @@ std::optional<KeptOrbits::Place> KeptOrbits::place(std::size_t object, SimTime t
   if (time <= kept.last->state.time) {
     const auto then = kept.object.estimate_at(time);
     if (!then) return std::nullopt;
-    return Place{then->state, sigma_of(*then)};
+    return Place{then->state, sigma_of(*then), sigma_of(*then)};
   }
   if (!look_ahead(kept, time)) return std::nullopt;
   const double steps = (time - kept.last->state.time).seconds() / sigma_step_s;
-  const auto k = std::min(std::size_t(steps), kept.sigma_m.size() - 1);
-  const double next_m = kept.sigma_m[std::min(k + 1, kept.sigma_m.size() - 1)];
-  return Place{kept.ahead->at(time), std::max(kept.sigma_m[k], next_m)};
+  const auto k = std::min(std::size_t(steps), kept.sigmas.size() - 1);
+  const Sigmas& now = kept.sigmas[k];
+  const Sigmas& next = kept.sigmas[std::min(k + 1, kept.sigmas.size() - 1)];
+  return Place{kept.ahead->at(time), std::max(now.sigma_m, next.sigma_m),
+               std::max(now.burnt_sigma_m, next.burnt_sigma_m)};
 }
 
 Outcome<OrbitEstimate> KeptOrbits::estimate(std::size_t object, SimTime time) {
@@ -119,20 +114,12 @@ Outcome<OrbitEstimate> KeptOrbits::estimate(std::size_t object, SimTime time) {
   return moved_along(forces_, *kept.ahead, kept.last->covariance, time);
 }
 
-double KeptOrbits::burnt_sigma_m(std::size_t object, SimTime time) const {
-  const Kept& kept = objects_.at(object);
-  if (!kept.last) return 0.0;
-  const double since_s = (time - kept.last->state.time).seconds();
-  return burn_sigmas_m(kept.last->state, std::max(0.0, since_s)).norm();
-}
-
 Outcome<OrbitEstimate> KeptOrbits::burnt(std::size_t object, SimTime time) {
-  auto out = estimate(object, time);
-  const Kept& kept = objects_.at(object);
-  if (!out || !kept.last) return out;
-  const double since_s = (time - kept.last->state.time).seconds();
-  add_errors(*out, burn_sigmas_m(out->state, std::max(0.0, since_s)));
-  return out;
+  Kept& kept = objects_.at(object);
+  if (!kept.last || time <= kept.last->state.time || !look_ahead(kept, time))
+    return kept.object.estimate_at(time);
+  const OrbitEstimate last = perhaps_manoeuvred(*kept.last, burn_m_per_s);
+  return moved_along(forces_, *kept.ahead, last.covariance, time);
 }
 
 Outcome<KeptOrbit> KeptOrbits::take(std::size_t object, const OrbitEstimate& prior,

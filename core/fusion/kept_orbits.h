@@ -26,15 +26,13 @@ class KeptOrbits {
   /// Where an object is, and the largest standard deviation of its position, for a coarse search.
   struct Place {
     OrbitState state;
-    double sigma_m = 0.0;
+    double sigma_m = 0.0, burnt_sigma_m = 0.0;  // as believed; after a manoeuvre that may have been
   };
   std::optional<Place> place(std::size_t object, SimTime time);
   Outcome<OrbitEstimate> estimate(std::size_t object, SimTime time);
   /// The estimate of an object that may have changed its velocity since its last arc, by some
   /// decimetres a second.
   Outcome<OrbitEstimate> burnt(std::size_t object, SimTime time);
-  /// Standard deviation of its place [m], at the most.
-  double burnt_sigma_m(std::size_t object, SimTime time) const;
 
   /// Takes an arc of detections, in any order. `prior`: what is believed of an object that is not
   /// kept yet, before the arc. Detections before the last that were taken are left out. Refuses an
@@ -48,12 +46,15 @@ class KeptOrbits {
                                       const std::function<bool(std::size_t)>& may_be);
 
  private:
+  struct Sigmas {
+    double sigma_m = 0.0, burnt_sigma_m = 0.0;
+  };
   struct Kept {
     CatalogueObject object;
     std::uint32_t arcs = 0;
     std::optional<OrbitEstimate> last = {};  // after the last arc
     std::optional<ArcPath> ahead = {};       // from there
-    std::vector<double> sigma_m = {};        // along it, every sigma_step_s
+    std::vector<Sigmas> sigmas = {};         // along it, every sigma_step_s
   };
   bool look_ahead(Kept& kept, SimTime to);
 

@@ -79,20 +79,6 @@ Outcome<PassArc> associate_pass(const ForceModel& forces, const OrbitEstimate& e
   return out;
 }
 
-namespace {
-
-/// The orbit of an object as it would be with a manoeuvre since its last observation.
-Outcome<OrbitEstimate> with_manoeuvre(const MaintenanceForces& forces,
-                                      const CatalogueObject& object, double sigma_m_per_s,
-                                      SimTime time) {
-  auto last = object.estimate_at(object.time());
-  if (!last) return last;
-  last->covariance.block<3, 3>(3, 3) += sigma_m_per_s * sigma_m_per_s * Eigen::Matrix3d::Identity();
-  return move_on(forces, *last, time);
-}
-
-}  // namespace
-
 Outcome<PassArc> associate_pass(const MaintenanceForces& forces, const CatalogueObject& object,
                                 std::span<const PassExposure> exposures,
                                 const PassAssociationSettings& settings) {
@@ -107,7 +93,10 @@ Outcome<PassArc> associate_pass(const MaintenanceForces& forces, const Catalogue
     if (!expected) return Outcome<PassArc>::refused(expected.reason);
     auto arc = associate_pass(forces.derivatives(), *expected, part, settings);
     if (arc && arc->observations.empty() && settings.manoeuvre_m_per_s > 0) {
-      const auto led = with_manoeuvre(forces, object, settings.manoeuvre_m_per_s, begin);
+      const auto last = object.estimate_at(object.time());
+      if (!last) return Outcome<PassArc>::refused(last.reason);
+      const auto led =
+          move_on(forces, perhaps_manoeuvred(*last, settings.manoeuvre_m_per_s), begin);
       if (!led) return Outcome<PassArc>::refused(led.reason);
       arc = associate_pass(forces.derivatives(), *led, part, settings);
       all.after_a_manoeuvre = all.after_a_manoeuvre || (arc && !arc->observations.empty());

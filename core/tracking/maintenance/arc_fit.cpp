@@ -251,6 +251,12 @@ Eigen::Matrix4d ArcFit::covariance_of(std::size_t k) const {
   return half.transpose() * half;
 }
 
+OrbitEstimate perhaps_manoeuvred(OrbitEstimate estimate, double sigma_m_per_s) {
+  estimate.covariance.block<3, 3>(3, 3) +=
+      sigma_m_per_s * sigma_m_per_s * Eigen::Matrix3d::Identity();
+  return estimate;
+}
+
 OrbitEstimate moved_along(const MaintenanceForces& forces, const ArcPath& path,
                           const OrbitMatrix& covariance, SimTime to) {
   const OrbitMatrix all = path.transition(to);

@@ -110,6 +110,8 @@ class ArcFit {
 /// of the forces.
 OrbitEstimate moved_along(const MaintenanceForces& forces, const ArcPath& path,
                           const OrbitMatrix& covariance, SimTime to);
+/// An estimate of an object that may manoeuvre at once, by `sigma_m_per_s` along each axis.
+OrbitEstimate perhaps_manoeuvred(OrbitEstimate estimate, double sigma_m_per_s);
 /// An estimate moved on to a later time, with the noise of the forces.
 Outcome<OrbitEstimate> move_on(const MaintenanceForces& forces, const OrbitEstimate& estimate,
                                SimTime to);
