@@ -6,7 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/detection/known/catalogue_sky.h"
 #include "core/detection/known/stars_seen.h"
-#include "core/detection/stars/alike_streaks.h"
+#include "core/detection/stars/alike_trail.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
 #include "core/products/frame_report.h"
