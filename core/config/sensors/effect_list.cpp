@@ -266,7 +266,8 @@ std::vector<double> numbers_in(const InstrumentParameter& p, const SensorConfig&
 std::vector<double> numbers_in(const ImageParameter& p, const SensorConfig& sensor) {
   return {sensor.camera.optics.image.*p.value};
 }
-std::vector<double> numbers_in(const DetectorParameter& p, const SensorConfig& sensor) {
+template <class DetectorEffect>
+std::vector<double> numbers_in(const ParameterOf<DetectorEffect>& p, const SensorConfig& sensor) {
   return {p.number_of(sensor.camera.detector)};
 }
 
