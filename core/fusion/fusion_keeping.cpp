@@ -58,7 +58,7 @@ std::optional<KeptOrbit> Fusion::keep(LiveTrack& track) {
     prior = *seen;
     prior.covariance *= prior_inflation * prior_inflation;
     if (const auto object = owner_of(track, prior.state)) {
-      track.object = *object;
+      track.object = object;
       track_of_[*object] = &track;
     }
   }
