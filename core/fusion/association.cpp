@@ -81,18 +81,16 @@ std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFram
   for (LiveTrack* track : scene.placed)
     add({.track = track}, track->rough.position_m, track->rough.velocity_m_per_s,
         track->rough_sigma_m(settings_.acceleration_noise_m2_per_s3));
-  for (const std::size_t i : kept_ ? kept_->objects() : std::vector<std::size_t>{}) {
+  for (const auto& [i, place] : scene.kept) {
     if (track_of_[i]) continue;
-    const auto place = kept_->place(i, scene.time);
-    if (!place) continue;
-    const auto& [state, sigma_m, burnt_sigma_m] = *place;
+    const auto& [state, sigma_m, burnt_sigma_m] = place;
     add({.object = i}, state.position_m, state.velocity_m_per_s, sigma_m);
     add({.object = i, .burnt = true}, state.position_m, state.velocity_m_per_s, burnt_sigma_m);
   }
   for (std::size_t word = 0; word < inside.size(); ++word)
     for (std::uint64_t bits = inside[word]; bits != 0; bits &= bits - 1) {
       const std::size_t i = word * 64 + std::size_t(std::countr_zero(bits));
-      if (track_of_[i] || (kept_ && kept_->has(i))) continue;
+      if (track_of_[i] || scene.is_kept(i)) continue;
       add({.object = i}, catalogue_.position_m(i), catalogue_.velocity_m_per_s(i),
           catalogue_.sigma_m(i));
     }

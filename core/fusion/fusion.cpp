@@ -60,6 +60,7 @@ FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
     Scene scene(clock_, catalogue_, settings_.ellipsoid);
     for (const auto& track : tracks_)
       if (track->place_roughly(forces_, scene.time)) scene.placed.push_back(track.get());
+    if (kept_) scene.kept = kept_->places(scene.time);
     const std::size_t words = cone_words(catalogue_.size());
     const auto inside = scene.objects_in(group, catalogue_);
     for (std::size_t k = 0; k < group.size(); ++k)

@@ -13,11 +13,12 @@ constexpr double prior_inflation = 10.0;  // factor of its errors, which are of 
 
 }  // namespace
 
-/// What is known of an object without a track at about a time: by its kept orbit, if it has one,
-/// else by its elements at the time of the scene.
+/// What is known of an object without a track at about a time: by its kept orbit, if it has one
+/// that reaches there, else by its elements at the time of the scene.
 Outcome<OrbitEstimate> Fusion::believed(std::size_t object, SimTime time) const {
   if (kept_ && kept_->has(object)) {
     auto kept = kept_->estimate(object, time);
+    if (!kept && object < catalogue_.size()) return catalogue_.estimate(object);
     if (!kept) return kept;
     // A filter of minutes takes the scales as known.
     kept->covariance.bottomRows<2>().setZero();

@@ -38,6 +38,11 @@ std::vector<std::uint64_t> Fusion::Scene::objects_in(std::span<const SensorFrame
   return inside;
 }
 
+bool Fusion::Scene::is_kept(std::size_t object) const {
+  return std::ranges::binary_search(kept, object, {},
+                                    &std::pair<std::size_t, KeptOrbits::Place>::first);
+}
+
 double Fusion::Scene::sunlit(const Vec<Gcrs>& position_m) const {
   return norm(position_m) < surface_m ? 0.0 : shadow.sunlit_fraction(position_m);
 }

@@ -29,10 +29,14 @@ struct Fusion::Scene {
   /// Fraction of the Sun's disc that shines on a place.
   double sunlit(const Vec<Gcrs>& position_m) const;
 
+  /// Whether an object is expected where its kept orbit has it.
+  bool is_kept(std::size_t object) const;
+
   SimTime time;
   EarthShadow shadow;
-  std::vector<LiveTrack*> placed;  // tracks with a rough place
-  std::vector<LooseSource> loose;  // what no track took
+  std::vector<LiveTrack*> placed;                               // tracks with a rough place
+  std::vector<LooseSource> loose;                               // what no track took
+  std::vector<std::pair<std::size_t, KeptOrbits::Place>> kept;  // kept objects, and where they are
 };
 
 }  // namespace dmise

@@ -13,7 +13,6 @@ constexpr std::size_t max_tried = 3;  // objects whose manoeuvre may explain an 
 constexpr double reach_sigmas = 3.0;  // largest manoeuvre that is tried, in its expected sizes
 // Along the motion a change of velocity moves an object three times as far as it goes in the time.
 constexpr double drift_factor = 3.0;
-
 constexpr double burn_m_per_s = 0.2;  // usual manoeuvres, one sigma along each axis
 
 /// Whether an orbit explains an arc: without outliers, chi-square within five deviations of its
@@ -35,15 +34,12 @@ double sigma_of(const OrbitEstimate& estimate) {
 std::optional<KeptManoeuvre> described(const std::optional<FoundManoeuvre>& found) {
   if (!found) return std::nullopt;
   const Vec<Rtn>& v = found->change.delta_v_m_per_s;
-  KeptManoeuvre out{.time = found->change.time,
-                    .time_sigma_s = found->time_sigma_s,
-                    .delta_v_m_per_s = {v.x, v.y, v.z},
-                    .found = found->found,
-                    .confidence = found->confidence};
-  for (int row = 0, k = 0; row < 3; ++row)
-    for (int column = 0; column <= row; ++column, ++k)
-      out.covariance[std::size_t(k)] = found->covariance(row, column);
-  return out;
+  return KeptManoeuvre{.time = found->change.time,
+                       .time_sigma_s = found->time_sigma_s,
+                       .delta_v_m_per_s = {v.x, v.y, v.z},
+                       .covariance = lower_triangle<3>(found->covariance),
+                       .found = found->found,
+                       .confidence = found->confidence};
 }
 
 }  // namespace
@@ -62,9 +58,10 @@ OrbitEstimate with_usual_scales(OrbitEstimate estimate) {
 KeptOrbits::KeptOrbits(const Clock& clock, SimTime first, SimTime last)
     : last_(last), forces_(clock, first, last) {}
 
-std::vector<std::size_t> KeptOrbits::objects() const {
-  std::vector<std::size_t> out;
-  for (const auto& [object, kept] : objects_) out.push_back(object);
+std::vector<std::pair<std::size_t, KeptOrbits::Place>> KeptOrbits::places(SimTime time) {
+  std::vector<std::pair<std::size_t, Place>> out;
+  for (const auto& [object, kept] : objects_)
+    if (const auto there = place(object, time)) out.emplace_back(object, *there);
   return out;
 }
 
@@ -140,23 +137,20 @@ Outcome<KeptOrbit> KeptOrbits::take(std::size_t object, const OrbitEstimate& pri
   ++kept.arcs;
   kept.last = *now;
   kept.ahead.reset();
-  KeptOrbit out{.time = now->state.time,
-                .position_m = now->state.position_m,
-                .velocity_m_per_s = now->state.velocity_m_per_s,
-                .drag_m2_per_kg = now->state.drag_m2_per_kg,
-                .drag_sigma_m2_per_kg = std::sqrt(now->covariance(drag_row, drag_row)),
-                .srp_m2_per_kg = now->state.srp_m2_per_kg,
-                .srp_sigma_m2_per_kg = std::sqrt(now->covariance(srp_row, srp_row)),
-                .arcs = kept.arcs,
-                .detections = std::uint32_t(arc.size()),
-                .outliers = std::uint32_t(news->outliers),
-                .innovation_d2 = std::max(0.0, news->innovation_d2),
-                .degrees = std::uint32_t(news->degrees),
-                .manoeuvre = described(news->manoeuvre)};
-  for (int row = 0, k = 0; row < 6; ++row)
-    for (int column = 0; column <= row; ++column, ++k)
-      out.covariance[std::size_t(k)] = now->covariance(row, column);
-  return out;
+  return KeptOrbit{.time = now->state.time,
+                   .position_m = now->state.position_m,
+                   .velocity_m_per_s = now->state.velocity_m_per_s,
+                   .covariance = lower_triangle<6>(now->covariance),
+                   .drag_m2_per_kg = now->state.drag_m2_per_kg,
+                   .drag_sigma_m2_per_kg = std::sqrt(now->covariance(drag_row, drag_row)),
+                   .srp_m2_per_kg = now->state.srp_m2_per_kg,
+                   .srp_sigma_m2_per_kg = std::sqrt(now->covariance(srp_row, srp_row)),
+                   .arcs = kept.arcs,
+                   .detections = std::uint32_t(arc.size()),
+                   .outliers = std::uint32_t(news->outliers),
+                   .innovation_d2 = std::max(0.0, news->innovation_d2),
+                   .degrees = std::uint32_t(news->degrees),
+                   .manoeuvre = described(news->manoeuvre)};
 }
 
 std::optional<std::size_t> KeptOrbits::owner_of(const OrbitState& seen,

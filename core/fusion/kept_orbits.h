@@ -21,14 +21,14 @@ class KeptOrbits {
   KeptOrbits& operator=(const KeptOrbits&) = delete;
 
   bool has(std::size_t object) const { return objects_.contains(object); }
-  std::vector<std::size_t> objects() const;  // in rising order
 
   /// Where an object is, and the largest standard deviation of its position, for a coarse search.
   struct Place {
     OrbitState state;
     double sigma_m = 0.0, burnt_sigma_m = 0.0;  // as believed; after a manoeuvre that may have been
   };
-  std::optional<Place> place(std::size_t object, SimTime time);
+  /// The places of all objects that have one, by rising object.
+  std::vector<std::pair<std::size_t, Place>> places(SimTime time);
   Outcome<OrbitEstimate> estimate(std::size_t object, SimTime time);
   /// The estimate of an object that may have changed its velocity since its last arc, by some
   /// decimetres a second.
@@ -56,6 +56,7 @@ class KeptOrbits {
     std::optional<ArcPath> ahead = {};       // from there
     std::vector<Sigmas> sigmas = {};         // along it, every sigma_step_s
   };
+  std::optional<Place> place(std::size_t object, SimTime time);
   bool look_ahead(Kept& kept, SimTime to);
 
   SimTime last_;

@@ -100,6 +100,7 @@ Track published(const LiveTrack& track, SimTime time) {
             .time = time,
             .position_m = now.state.position_m,
             .velocity_m_per_s = now.state.velocity_m_per_s,
+            .covariance = lower_triangle<6>(now.covariance),
             .drag_m2_per_kg = now.state.drag_m2_per_kg,
             .drag_sigma_m2_per_kg = std::sqrt(now.covariance(drag_row, drag_row)),
             .srp_m2_per_kg = now.state.srp_m2_per_kg,
@@ -109,9 +110,6 @@ Track published(const LiveTrack& track, SimTime time) {
             .associated = track.associated,
             .innovation_d2 = track.innovation_d2,
             .last_seen = track.last_seen};
-  for (int row = 0, k = 0; row < 6; ++row)
-    for (int column = 0; column <= row; ++column, ++k)
-      out.covariance[std::size_t(k)] = now.covariance(row, column);
   if (track.brightness.is_known()) out.magnitude = track.magnitude(standard_range_m);
   return out;
 }

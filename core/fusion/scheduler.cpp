@@ -112,9 +112,7 @@ Task Scheduler::task_of(const Mount& mount, const std::vector<Option>& options, 
     task.runner_up = options[1].target->track;
     task.runner_up_nats_per_s = options[1].rate();
   }
-  for (int row = 0, k = 0; row < 6; ++row)
-    for (int column = 0; column <= row; ++column, ++k)
-      task.covariance[std::size_t(k)] = plan.at.covariance(row, column);
+  task.covariance = lower_triangle<6>(plan.at.covariance);
   const SimTime margin = sim_seconds(path_margin_s);
   put_path(forces_, plan.at.state, plan.on_target - margin, plan.end + margin, task);
   return task;

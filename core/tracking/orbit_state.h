@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <span>
 
 #include "core/base/sim_time.h"
@@ -40,6 +41,16 @@ inline Vec<Gcrs> gcrs_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()
 /// All numbers finite, positions outside the Earth's centre, variances not negative.
 bool is_sane(const OrbitState& state);
 bool is_sane(const OrbitEstimate& estimate);
+
+/// The first rows of a covariance's lower triangle, row by row, as in an OEM.
+template <int rows, class Matrix>
+std::array<double, rows*(rows + 1) / 2> lower_triangle(const Matrix& covariance) {
+  std::array<double, rows*(rows + 1) / 2> out{};
+  std::size_t k = 0;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column <= row; ++column) out[k++] = covariance(row, column);
+  return out;
+}
 
 /// Columns: the radial, transverse and normal axes of its orbit.
 Eigen::Matrix3d orbit_axes(const OrbitState& state);

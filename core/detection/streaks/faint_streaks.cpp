@@ -231,15 +231,19 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
 /// The best of straight lines of a few lengths and directions through a place.
 Trail rough_line_through(const FilteredFrame& frame, const Trail& place, double sigma_px) {
   constexpr int directions = 24, offsets = 1;
+  constexpr double shortest_sigmas = 8.0,
+                   longest_sigmas = 130.0;  // lengths double from one to the other
+  constexpr double offset_share = 0.4;      // shift over the length: the place may be near an end
   Trail line = place, best = place;
   double most = 0.0;
-  for (double length_px = 8 * sigma_px; length_px < 130.0 * sigma_px; length_px *= 2)
+  for (double length_px = shortest_sigmas * sigma_px; length_px < longest_sigmas * sigma_px;
+       length_px *= 2)
     for (int k = 0; k < directions; ++k)
       for (int offset = -offsets; offset <= offsets; ++offset) {
         line.length_px = length_px;
         line.angle_rad = pi * k / directions;
-        line.x_px = place.x_px + 0.4 * offset * length_px * std::cos(line.angle_rad);
-        line.y_px = place.y_px + 0.4 * offset * length_px * std::sin(line.angle_rad);
+        line.x_px = place.x_px + offset_share * offset * length_px * std::cos(line.angle_rad);
+        line.y_px = place.y_px + offset_share * offset * length_px * std::sin(line.angle_rad);
         const double snr = snr_along(frame, line);
         if (!(snr > most)) continue;
         most = snr;
