@@ -21,6 +21,7 @@
 #include "core/base/files/regular_file.h"
 #include "core/base/formatted.h"
 #include "core/base/printable.h"
+#include "nodes/runtime/process/process_stat.h"
 
 namespace dmise {
 namespace {
@@ -77,10 +78,8 @@ bool is_at(int fd, const std::string& path) {
 bool has_ended(const LockHolder& holder) {
   if (holder.host != host_name()) return false;
   if (kill(pid_t(holder.pid), 0) != 0 && errno == ESRCH) return true;
-  std::ifstream file("/proc/" + std::to_string(holder.pid) + "/stat");
-  const std::string stat{std::istreambuf_iterator<char>(file), {}};
-  const auto name_end = stat.rfind(") ");  // the name may contain any character
-  return name_end != std::string::npos && stat.find_first_of("ZX", name_end) == name_end + 2;
+  const char state = process_state(pid_t(holder.pid));
+  return state == 'Z' || state == 'X';
 }
 
 }  // namespace

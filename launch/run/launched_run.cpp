@@ -36,6 +36,7 @@
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/process/last_line.h"
+#include "nodes/runtime/process/process_stat.h"
 #include "nodes/runtime/program/command_line.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/frame/make_sensor.h"
@@ -46,6 +47,9 @@ namespace {
 
 using Clock_ = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
+
+/// How long the master may be busy without an answer before it counts as lost.
+constexpr auto busy_at_most = std::chrono::minutes(1);
 
 std::string number(double x) { return formatted("%.9g", x); }
 
@@ -244,7 +248,7 @@ class Launch {
     Restarts restarts(processes_, scenario_.network);
     std::optional<Clock_::time_point> first_death;
     auto asked = Clock_::now() - std::chrono::hours(1), next_count = asked;
-    auto answered = Clock_::now(), awake = answered;
+    auto answered = Clock_::now(), heard = answered, awake = answered;
     while (processes_.poll() && !stop.is_set()) {
       // While this process was suspended it could not receive anything.
       if (Seconds(Clock_::now() - awake).count() > scenario_.network.silent_after_s / 2)
@@ -259,7 +263,10 @@ class Launch {
       }
       if (Clock_::now() - asked > std::chrono::milliseconds(200)) {
         asked = Clock_::now();
-        if (ask(master, status)) answered = Clock_::now();
+        if (ask(master, status))
+          heard = answered = Clock_::now();
+        else if (Clock_::now() - heard < busy_at_most && is_busy("time-master"))
+          answered = Clock_::now();
         // Counting the frames of many sensors is expensive: at most a twentieth of the time.
         if (const auto begun = Clock_::now(); begun >= next_count && progress.is_due()) {
           progress.show(progress_state(status));
@@ -286,6 +293,13 @@ class Launch {
       outcome.status = "failed";
       outcome.reason = reason(status, clock_ended) + " (logs in " + directory_.path() + "/logs)";
     }
+  }
+
+  /// Whether a process waits for a core or a disk: on a machine with much to do that takes longer
+  /// than any answer should, and ends by itself.
+  bool is_busy(const std::string& name) const {
+    const char state = process_state(processes_.find(name)->pid);
+    return state == 'R' || state == 'D';
   }
 
   /// False if the master does not answer: it is starting, busy or gone.

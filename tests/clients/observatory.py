@@ -34,7 +34,7 @@ except ImportError as missing:
     print(f"skipped: {missing.name} is not installed (./dmise setup --tests)")
     sys.exit(77)
 
-from served_observatory import (ARCSEC, Served, argument, check, file_of, free_udp_port, journal, main, same_again,  # noqa: E402
+from served_observatory import (ARCSEC, Failure, Served, argument, check, file_of, free_udp_port, journal, main, same_again,  # noqa: E402
                                 wait_until)
 
 # What a member answers: a value, a condition of it, or what it raises.
@@ -280,20 +280,26 @@ def moves_on(camera, telescope, out, place):
     check(isinstance(answer(lambda: setattr(telescope, "Tracking", True)), ParkedException), "parked, it does not track")
 
 
-def brightest(image, below=60000):
-    """Row and column of the brightest star whose peak is below a count."""
-    row, column = numpy.unravel_index(numpy.argmax(numpy.where(image < below, image, 0)[40:-40, 40:-40]), (944, 944))
-    return row + 40, column + 40
-
-
 def around(image, place):
     """41 x 41 pixels about a place, without the sky."""
     return (image.astype(float) - numpy.median(image))[place[0] - 20:place[0] + 21, place[1] - 20:place[1] + 21]
 
 
-def variance_of_brightest(image):
-    """Mean variance of the light of the brightest star along an axis [px2], and its counts."""
-    part = around(image, brightest(image))
+def lone_star(image, below):
+    """Row and column of the brightest star whose peak is below a count and that has a hundredth of it beside it at most."""
+    far = numpy.hypot(*(numpy.indices((41, 41)) - 20)) > 5
+    inner = image[40:-40, 40:-40]
+    for index in numpy.argsort(inner, axis=None)[::-1]:
+        row, column = (axis + 40 for axis in numpy.unravel_index(index, inner.shape))
+        part = around(image, (row, column))
+        if image[row, column] < below and part.max() == part[20, 20] and part[far].max() < 0.01 * part.max() + 200:
+            return row, column
+    raise Failure("no star stands alone")
+
+
+def variance_of_star(image, place):
+    """Mean variance of a star's light along an axis [px2], and its counts."""
+    part = around(image, place)
     rows, columns = numpy.indices(part.shape)
     light = numpy.where(numpy.hypot(rows - 20, columns - 20) < 14, part, 0)
     total = light.sum()
@@ -305,7 +311,9 @@ def changes_the_light(camera, telescope, others, out):
     """Filters, focus and cover. A star has about as many photons a nanometre all over a band of 408 to 792 nm. 150 um out of the focus of an f/2 with pixels of 13 um a point is a ring of 75 um, 5.77 px,
     and 0.4 of that: its variance along an axis is radius^2 (1 + 0.4^2) / 4."""
     focuser, wheel, cover, _ = others
-    sharp, light = variance_of_brightest(image_of(camera, 2.0).T)
+    in_focus = image_of(camera, 2.0).T
+    star = lone_star(in_focus, 60000)
+    sharp, light = variance_of_star(in_focus, star)
     centre = focuser.Position
     focuser.Move(centre + 150)
     check(focuser.IsMoving and isinstance(answer(lambda: camera.StartExposure(1.0, True)), InvalidOperationException),
@@ -316,10 +324,10 @@ def changes_the_light(camera, telescope, others, out):
           isinstance(answer(lambda: setattr(wheel, "Position", 1)), InvalidOperationException) and
           isinstance(answer(cover.CloseCover), InvalidOperationException), "nothing moves while a shutter is open")
     wait_until(lambda: camera.ImageReady, "an image")
-    blurred, spread_light = variance_of_brightest(numpy.array(camera.ImageArray).T)
+    blurred, spread_light = variance_of_star(numpy.array(camera.ImageArray).T, star)
     ring = (150 / 2 / 13 / 2) ** 2 * (1 + 0.4 ** 2) / 4
     check(abs(blurred - sharp - ring) < 0.15 * ring and abs(spread_light / light - 1) < 0.05,
-          f"out of focus the variance of a star grows by {blurred - sharp:.2f} px2, by geometry {ring:.2f}; its light stays")
+          f"out of focus the variance of a star grows by {blurred - sharp:.2f} px2, by geometry {ring:.2f}; it has {spread_light / light:.3f} of its light")
     focuser.Move(centre)
     wait_until(lambda: not focuser.IsMoving, "the focuser")
 
@@ -327,7 +335,7 @@ def changes_the_light(camera, telescope, others, out):
     wheel.Position = 3
     check(wheel.Position == -1, "the wheel turns")
     wait_until(lambda: wheel.Position == 3, "the filter")
-    star = brightest(in_v, 12000)
+    star = lone_star(in_v, 12000)
     ratio = around(image_of(camera, 2.0).T, star)[12:29, 12:29].sum() / around(in_v, star)[12:29, 12:29].sum()
     check(2.3 < ratio < 3.7, f"through a filter of three times the width a star has {ratio:.2f} times the light")
     names = {line["frame"]: line["filter"] for line in journal(out) if line["sensor"] == "telescope"}

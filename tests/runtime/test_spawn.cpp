@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/files/text_file.h"
+#include "nodes/runtime/process/process_stat.h"
 
 namespace dmise {
 namespace {
@@ -80,6 +81,20 @@ TEST_F(SpawnTest, AGroupOfItsOwnEndsWithWhatItHasStarted) {
   int status = 0;
   EXPECT_EQ(waitpid(pid, &status, 0), pid);
   EXPECT_TRUE(WIFSIGNALED(status));
+}
+
+TEST(ProcessState, IsThatOfTheProcess) {
+  const pid_t pid = spawn({.name = "sleep", .arguments = {"/bin/sleep", "60"}});
+  ASSERT_EQ(kill(pid, SIGSTOP), 0);
+  ASSERT_EQ(waitpid(pid, nullptr, WUNTRACED), pid);
+  EXPECT_EQ(process_state(pid), 'T');
+  ASSERT_EQ(kill(pid, SIGKILL), 0);
+  siginfo_t ended{};
+  ASSERT_EQ(waitid(P_PID, id_t(pid), &ended, WEXITED | WNOWAIT), 0);
+  EXPECT_EQ(process_state(pid), 'Z');
+  ASSERT_EQ(waitpid(pid, nullptr, 0), pid);
+  EXPECT_EQ(process_state(pid), '?');
+  EXPECT_EQ(process_state(getpid()), 'R');
 }
 
 }  // namespace

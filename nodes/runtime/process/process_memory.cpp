@@ -5,8 +5,9 @@
 
 #include <ctime>
 #include <fstream>
-#include <sstream>
 #include <string>
+
+#include "nodes/runtime/process/process_stat.h"
 
 namespace dmise {
 namespace {
@@ -35,18 +36,13 @@ double process_cpu_s() {
 }
 
 double process_age_s() {
-  std::ifstream file("/proc/self/stat");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto name_end = text.rfind(')');
-  if (name_end == std::string::npos) return 0.0;
-  std::istringstream fields(text.substr(name_end + 1));
-  std::string skipped;
-  for (int field = 3; field < 22; ++field) fields >> skipped;  // numbered as in proc(5)
-  double began = 0.0;
-  fields >> began;
+  constexpr std::size_t start_time = 22 - 3;  // numbered as in proc(5)
+  const auto fields = process_stat(getpid());
+  if (fields.size() <= start_time) return 0.0;
   timespec now{};
   clock_gettime(CLOCK_BOOTTIME, &now);
-  const double age_s = seconds_of(now) - began / double(sysconf(_SC_CLK_TCK));
+  const double age_s =
+      seconds_of(now) - std::stod(fields[start_time]) / double(sysconf(_SC_CLK_TCK));
   return age_s > 0.0 ? age_s : 0.0;
 }
 
