@@ -11,6 +11,7 @@ Theory: the share that noise leaves above an SNR of 6, nothing hidden. --write: 
 """
 
 import argparse
+import hashlib
 import itertools
 import json
 import math
@@ -48,14 +49,16 @@ DETECTORS = ("dmise", *SETTINGS)
 
 def satsim_frames(python, directory, seed, count, a_process=20):
     """Its memory grows with each frame, so that a process draws few."""
-    said = []
-    for first in range(seed, seed + count, a_process):
+    drawn = directory / f"satsim-{seed}-{count}.json"
+    said = json.loads(drawn.read_text()) if drawn.exists() else []
+    for first in range(seed, seed + count, a_process) if not said else ():
         number = min(a_process, seed + count - first)
         done = subprocess.run([python, HERE / "satsim_frames.py", directory, str(first), str(number)], capture_output=True, text=True,
                               env={**os.environ, "TF_CPP_MIN_LOG_LEVEL": "3"})
         if done.returncode:
             raise referee.Failure(f"satsim: {done.stderr.strip().splitlines()[-1]}")
         said += json.loads(done.stdout.splitlines()[-1])
+    drawn.write_text(json.dumps(said))
     frames = []
     for one in said:
         objects = [galsim_frames.Object(**item) for item in one["objects"]]
@@ -95,6 +98,18 @@ def with_photutils(counts, header, threshold, wider=1.0):
                                      "snr": found.segment_flux / (local * np.sqrt(found.area.value))})
 
 
+def kept(path, name, find):
+    """What another detector finds in a frame with each of its settings; it is kept beside the frame, for frames that are kept."""
+    digest = hashlib.sha256(f"{name} {SETTINGS[name]} {peer_detectors.versions()}".encode()).hexdigest()[:12]
+    file = path.with_name(f"{path.stem}-{name}-{digest}.npz")
+    if not file.exists():
+        found = [find(**setting) for setting in SETTINGS[name]]
+        np.savez(file.with_suffix(".part.npz"), *found)
+        file.with_suffix(".part.npz").rename(file)
+    with np.load(file) as arrays:
+        return [arrays[f"arr_{i}"] for i in range(len(SETTINGS[name]))]
+
+
 def found_in(job):
     """{detector: [catalogue of each setting]} of a frame."""
     dmise, frame, detectors = job
@@ -105,7 +120,7 @@ def found_in(job):
         by = {"sep": lambda **s: peer_detectors.with_sep(counts, header, light=False, **s)[0],
               "source-extractor": lambda **s: peer_detectors.with_source_extractor(even, header, **s)[0],
               "photutils": lambda **s: with_photutils(counts, header, **s)}
-        out = {name: [by[name](**s) for s in SETTINGS[name]] for name in detectors if name != "dmise"}
+        out = {name: kept(frame.path, name, by[name]) for name in detectors if name != "dmise"}
     return {"dmise": [peer_detectors.dmise(dmise, frame.path, "--catalogue", "none")], **out}
 
 
@@ -238,7 +253,7 @@ def main():
     parser.add_argument("--seed", type=int, default=20000, help="of the first frame of each kind (%(default)s)")
     parser.add_argument("--detectors", nargs="*", choices=DETECTORS, default=DETECTORS, help="beside dmise; all unless given")
     parser.add_argument("--jobs", type=int, default=2, help="processes (%(default)s)")
-    parser.add_argument("--keep", type=pathlib.Path, help="directory for the frames")
+    parser.add_argument("--keep", type=pathlib.Path, help="directory for the frames and what others find in them, which is used again")
     parser.add_argument("--write", action="store_true", help="write the tables of docs/detection.md")
     parser.add_argument("--misses", action="store_true", help="list our bright misses and false alarms")
     options = parser.parse_args()

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstring>
 #include <mutex>
+#include <span>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 
 namespace dmise {
 namespace {
@@ -39,6 +41,7 @@ void FftBuffer::Free::operator()(float* p) const { fftwf_free(p); }
 
 FftBuffer::FftBuffer(std::size_t floats) : data_(fftwf_alloc_real(floats)), size_(floats) {
   if (!data_) throw Error("fft: no memory for " + std::to_string(floats) + " numbers");
+  prefer_large_pages(std::as_writable_bytes(std::span(data_.get(), floats)));
   std::memset(data_.get(), 0, floats * sizeof(float));
 }
 
