@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "bench/validation/real_cameras.h"
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/error.h"
 #include "core/base/files/fits_guard.h"
 #include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/config/make_clock.h"
 #include "core/config/scenario_text.h"
 #include "core/detection/light/psf.h"

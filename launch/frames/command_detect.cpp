@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/detection/detection_lines.h"
 #include "core/ingest/star_trails.h"
 #include "launch/command/command.h"

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "core/calibration/known_defects.h"
+#include "core/image/known_defects.h"
 #include "core/sequences/detect_sequence.h"
 #include "core/sequences/sequence_lines.h"
 #include "launch/command/notes.h"

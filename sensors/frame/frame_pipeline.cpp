@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/stopwatch.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/config/sensors/effect_list.h"
 #include "core/detection/detect.h"
 #include "core/detector/exposure/expose.h"

@@ -1,4 +1,4 @@
-#include "core/calibration/solve_frame.h"
+#include "core/astrometry/solve_frame.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/calibration/solve_frame.h"
+#include "core/astrometry/solve_frame.h"
 #include "core/detection/known/catalogue_sky.h"
 #include "core/sky/stars/star_cache.h"
 #include "core/sky/variables/variable_stars.h"

@@ -1,14 +1,14 @@
-#include "core/calibration/solve_frame.h"
+#include "core/astrometry/solve_frame.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/astrometry/star_photometry.h"
+#include "core/astrometry/star_sources.h"
 #include "core/base/error.h"
 #include "core/base/files/json.h"
 #include "core/base/formatted.h"
 #include "core/base/units.h"
-#include "core/calibration/star_photometry.h"
-#include "core/calibration/star_sources.h"
 #include "core/detection/known/atmosphere.h"
 #include "core/frames/quaternion.h"
 #include "core/time/clock.h"

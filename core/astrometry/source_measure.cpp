@@ -1,4 +1,4 @@
-#include "core/calibration/source_measure.h"
+#include "core/astrometry/source_measure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/calibration/star_photometry.h"
+#include "core/astrometry/star_photometry.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/calibration/known_defects.h"
+#include "core/image/known_defects.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/astrometry/plate_match.h"
+#include "core/astrometry/star_sources.h"
 #include "core/base/parallel.h"
-#include "core/calibration/star_sources.h"
 #include "core/image/fits_file.h"
 
 namespace dmise {

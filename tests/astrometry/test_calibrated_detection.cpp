@@ -1,4 +1,4 @@
-#include "core/calibration/calibrated_detection.h"
+#include "core/astrometry/calibrated_detection.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/numeric/rng.h"
-#include "core/calibration/known_defects.h"
+#include "core/image/known_defects.h"
 #include "core/sky/stars/star_cache.h"
 #include "core/wcs/wcs.h"
 #include "tests/support/data.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/calibration/solve_frame.h"
+#include "core/astrometry/solve_frame.h"
 #include "core/detection/detect.h"
 
 namespace dmise {

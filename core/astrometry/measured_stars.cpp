@@ -1,4 +1,4 @@
-#include "core/calibration/measured_stars.h"
+#include "core/astrometry/measured_stars.h"
 
 #include <algorithm>
 #include <cmath>

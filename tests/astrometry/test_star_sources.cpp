@@ -1,4 +1,4 @@
-#include "core/calibration/star_sources.h"
+#include "core/astrometry/star_sources.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
+#include "core/astrometry/measured_stars.h"
 #include "core/astrometry/plate_frame.h"
 #include "core/astrometry/zero_point.h"
-#include "core/calibration/measured_stars.h"
 #include "core/image/fits_file.h"
 
 namespace dmise {

@@ -1,4 +1,4 @@
-#include "core/calibration/deblend.h"
+#include "core/astrometry/deblend.h"
 
 #include <gtest/gtest.h>
 

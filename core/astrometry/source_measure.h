@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "core/astrometry/plate_match.h"
+#include "core/astrometry/star_sources.h"
 #include "core/base/algebra/symmetric2.h"
 #include "core/base/image.h"
-#include "core/calibration/star_sources.h"
 #include "core/detection/light/trail_fit.h"
 #include "core/detection/pixels/background.h"
 #include "core/detection/pixels/components.h"

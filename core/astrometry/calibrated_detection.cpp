@@ -1,4 +1,4 @@
-#include "core/calibration/calibrated_detection.h"
+#include "core/astrometry/calibrated_detection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/units.h"
-#include "core/calibration/known_defects.h"
+#include "core/image/known_defects.h"
 
 namespace dmise {
 namespace {

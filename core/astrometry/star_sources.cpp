@@ -1,4 +1,4 @@
-#include "core/calibration/star_sources.h"
+#include "core/astrometry/star_sources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 #include <optional>
 #include <span>
 
+#include "core/astrometry/deblend.h"
+#include "core/astrometry/source_measure.h"
 #include "core/base/numeric/golden_section.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
-#include "core/calibration/deblend.h"
-#include "core/calibration/source_measure.h"
 #include "core/detection/frame_scene.h"
 #include "core/detection/pixels/background.h"
 #include "core/detection/pixels/components.h"
