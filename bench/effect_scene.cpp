@@ -302,7 +302,7 @@ EffectScene draw_effect_scene(std::uint64_t seed, int number,
   {
     const Scenario empty = load_scenario(path);
     const SceneFrames frames(empty, "eye", 1, threads);
-    const View view(frames.sensor(), frames.times(), frames.world());
+    const View view(frames.sensor(), frames.times(), frames.states());
     count = std::max(int(f.tracks_object), f.dice.below(4));
     for (int i = 0; i < count; ++i) objects += draw_object(f, view, i);
     faintest = draw_stars(f, view, directory / "stars.csv");

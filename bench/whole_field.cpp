@@ -155,7 +155,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   std::ofstream(trial.scene.path) << field.yaml;
   const SceneFrames frames(load_scenario(trial.scene.path), "eye", 1, threads);
   SensorConfig sensor = frames.sensor();
-  const View view(sensor, frames.times(), frames.world(), frames.scenario().seed);
+  const View view(sensor, frames.times(), frames.states(), frames.scenario().seed);
   const PlanFacts facts =
       ExposurePlanner(sensor, nullptr, frames.scenario().faintest_star_mag, nullptr)
           .facts(view, {});
@@ -166,7 +166,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   for (int level = 0; level < SkyGrid::facts.reference(); ++level) {
     SensorConfig as = sensor;
     as.effects.set_level(SkyGrid::facts, level);
-    const View looked(as, frames.times(), frames.world(), frames.scenario().seed);
+    const View looked(as, frames.times(), frames.states(), frames.scenario().seed);
     fill_sky(looked, SampledSky::drawn, image, threads);
     measured.push_back({.background_sigma = sampled.error_of(image)});
     trial.levels.push_back({.scene = number,
@@ -181,7 +181,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   for (const Accuracy& accuracy : {draft_accuracy(), standard_accuracy()}) {
     SensorConfig as = sensor;
     as.accuracy = accuracy;
-    const View asked(as, frames.times(), frames.world(), frames.scenario().seed);
+    const View asked(as, frames.times(), frames.states(), frames.scenario().seed);
     const EffectPlan plan =
         ExposurePlanner(as, nullptr, frames.scenario().faintest_star_mag, nullptr).plan(asked, {});
     trial.plans.push_back({number, accuracy.name, accuracy.budget, plan.error,

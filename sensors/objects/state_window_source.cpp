@@ -1,4 +1,4 @@
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +18,15 @@ Tick thinned(Tick period, double every_s, SimTime tick) {
 
 }  // namespace
 
-WorldSource::WorldSource(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock,
-                         double environment_every_s)
+StateWindowSource::StateWindowSource(const Scenario& scenario, const SensorConfig& sensor,
+                                     const Clock& clock, double environment_every_s)
     : scenario_(scenario),
       sensor_(sensor),
       environment_(scenario, {sensor}, clock),
       environment_period_(
           thinned(environment_.common_period(), environment_every_s, scenario.tick)) {}
 
-KnotTicks WorldSource::ticks_of(const FrameTimes& commanded) const {
+KnotTicks StateWindowSource::ticks_of(const FrameTimes& commanded) const {
   const ExposureSpan exposure = exposure_span(sensor_, commanded);
   const Tick last_tick = scenario_.last_tick();
   const Tick before = std::max<Tick>(0, exposure.start.ns / scenario_.tick.ns - 1);
@@ -34,24 +34,27 @@ KnotTicks WorldSource::ticks_of(const FrameTimes& commanded) const {
           tick_needed(scenario_.interpolation, exposure.end, scenario_.tick, last_tick)};
 }
 
-World WorldSource::around(const FrameTimes& commanded, const ObjectPopulation& population,
-                          const StateSource& states) const {
+StateWindow StateWindowSource::around(const FrameTimes& commanded,
+                                      const ObjectPopulation& population,
+                                      const StateSource& states) const {
   return between(ticks_of(commanded), exposure_span(sensor_, commanded).end, population, states);
 }
 
-World WorldSource::until(const FrameTimes& commanded, const ObjectPopulation& population,
-                         const StateSource& states) const {
+StateWindow StateWindowSource::until(const FrameTimes& commanded,
+                                     const ObjectPopulation& population,
+                                     const StateSource& states) const {
   return between({0, ticks_of(commanded).last}, exposure_span(sensor_, commanded).end, population,
                  states);
 }
 
-World WorldSource::between(KnotTicks ticks, SimTime end, const ObjectPopulation& population,
-                           const StateSource& states) const {
-  World world(scenario_.interpolation, scenario_.last_tick());
-  world.add(std::make_shared<const ObjectRoster>(population.roster));
+StateWindow StateWindowSource::between(KnotTicks ticks, SimTime end,
+                                       const ObjectPopulation& population,
+                                       const StateSource& states) const {
+  StateWindow window(scenario_.interpolation, scenario_.last_tick());
+  window.add(std::make_shared<const ObjectRoster>(population.roster));
   if (!population.roster.objects.empty())
     for (Tick tick = ticks.first; tick <= ticks.last; ++tick)
-      world.add(std::make_shared<const ObjectStates>(states.at(tick, scenario_.time_of(tick))));
+      window.add(std::make_shared<const ObjectStates>(states.at(tick, scenario_.time_of(tick))));
   // Those that were published last before the first tick, and all after it.
   const auto published = [&](Tick period, const auto& add) {
     for (Tick tick = ticks.first - ticks.first % period;
@@ -59,22 +62,22 @@ World WorldSource::between(KnotTicks ticks, SimTime end, const ObjectPopulation&
       add(tick);
   };
   published(environment_period_, [&](Tick tick) {
-    world.add(std::make_shared<const EnvironmentState>(environment_.common(tick)));
+    window.add(std::make_shared<const EnvironmentState>(environment_.common(tick)));
   });
   published(environment_.site_period(), [&](Tick tick) {
     for (const SensorConfig& sensor : environment_.ground_sensors())
-      world.add(std::make_shared<const SiteState>(environment_.site(sensor, tick)));
+      window.add(std::make_shared<const SiteState>(environment_.site(sensor, tick)));
   });
-  return world;
+  return window;
 }
 
-World world_of_some(std::shared_ptr<const ObjectRoster> roster,
-                    std::shared_ptr<const EnvironmentState> environment,
-                    const EarthOrientation& earth, const ExposureSpan& span,
-                    std::vector<std::uint32_t> objects, const StateSource& states) {
-  World world;
-  world.add(std::move(roster));
-  world.add(std::move(environment));
+StateWindow window_of_some(std::shared_ptr<const ObjectRoster> roster,
+                           std::shared_ptr<const EnvironmentState> environment,
+                           const EarthOrientation& earth, const ExposureSpan& span,
+                           std::vector<std::uint32_t> objects, const StateSource& states) {
+  StateWindow window;
+  window.add(std::move(roster));
+  window.add(std::move(environment));
   const Clock& clock = states.clock();
   const auto instant = [&](SimTime t) {
     return StateInstant{t, clock.tai(t), clock.utc(t), earth, earth.gcrs_from_teme(t)};
@@ -86,11 +89,11 @@ World world_of_some(std::shared_ptr<const ObjectRoster> roster,
     const SimTime t{span.start.ns + length_ns * k / parts};
     const StateInstants around{instant({t.ns - slope_half_step_ns}), instant(t),
                                instant({t.ns + slope_half_step_ns})};
-    world.add_tick(k, t);
+    window.add_tick(k, t);
     of_knots.push_back(states.of_some(objects, k, around));
   }
-  world.set_states(std::move(objects), std::move(of_knots));
-  return world;
+  window.set_states(std::move(objects), std::move(of_knots));
+  return window;
 }
 
 }  // namespace dmise

@@ -1,4 +1,4 @@
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 
 #include <algorithm>
 #include <charconv>
@@ -23,7 +23,7 @@ Motion cubic_motion(double u, double tick_s, const Motion& before, const Motion&
                                                             s1 * (u * (3 * u - 2))};
 }
 
-void World::add(const std::shared_ptr<const State>& state) {
+void StateWindow::add(const std::shared_ptr<const State>& state) {
   const auto add_if_known = [&]<class One>(const One& one) {
     if constexpr (requires { this->add(std::shared_ptr<const One>(state, &one)); })
       this->add(std::shared_ptr<const One>(state, &one));
@@ -31,7 +31,7 @@ void World::add(const std::shared_ptr<const State>& state) {
   std::visit(add_if_known, *state);
 }
 
-void World::forget_before(SimTime t) {
+void StateWindow::forget_before(SimTime t) {
   // Ticks before the last at or before `t`: a time on a tick belongs to the interval that ends
   // there.
   const bool cubic = order_ == HermiteOrder::cubic;
@@ -42,7 +42,7 @@ void World::forget_before(SimTime t) {
     sites_.pop_front();
 }
 
-World::Around World::around(SimTime t) const {
+StateWindow::Around StateWindow::around(SimTime t) const {
   for (std::size_t k = 1; k < states_.size(); ++k)
     if (t <= states_[k]->time && t >= states_[k - 1]->time)
       return {states_[k - 1].get(), states_[k].get(), k - 1};
@@ -51,7 +51,7 @@ World::Around World::around(SimTime t) const {
   throw Error("no object states at " + std::to_string(t.seconds()) + " s");
 }
 
-KnotTicks World::ticks_for(SimTime start, SimTime end) const {
+KnotTicks StateWindow::ticks_for(SimTime start, SimTime end) const {
   const auto ticks_at = [&](SimTime t) {
     const Around interval = around(t);
     const KnotTicks two{interval.before->tick, interval.after->tick};
@@ -61,7 +61,7 @@ KnotTicks World::ticks_for(SimTime start, SimTime end) const {
   return {ticks_at(start).first, ticks_at(end).last};
 }
 
-void World::set_states(std::vector<std::uint32_t> objects, std::vector<ObjectStates> states) {
+void StateWindow::set_states(std::vector<std::uint32_t> objects, std::vector<ObjectStates> states) {
   for (auto& of_tick : states)
     for (auto& held : states_)
       if (held->tick == of_tick.tick) {
@@ -71,20 +71,20 @@ void World::set_states(std::vector<std::uint32_t> objects, std::vector<ObjectSta
   known_ = std::move(objects);
 }
 
-std::optional<std::size_t> World::place(std::size_t i) const {
+std::optional<std::size_t> StateWindow::place(std::size_t i) const {
   if (!known_) return i;
   const auto found = std::lower_bound(known_->begin(), known_->end(), i);
   if (found == known_->end() || *found != i) return std::nullopt;
   return std::size_t(found - known_->begin());
 }
 
-bool World::has_state(std::size_t i, SimTime t) const {
+bool StateWindow::has_state(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
   const auto k = place(i);
   return k && before->code[*k] == 0 && after->code[*k] == 0;
 }
 
-std::string World::why_no_state(std::size_t i, SimTime t) const {
+std::string StateWindow::why_no_state(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
   const auto k = place(i);
   if (!k) return "its states are not known";
@@ -95,7 +95,7 @@ std::string World::why_no_state(std::size_t i, SimTime t) const {
   return std::string(why) + ", at tick " + std::to_string(without.tick);
 }
 
-const ObjectStates& World::at_tick(const Around& interval, Tick tick) const {
+const ObjectStates& StateWindow::at_tick(const Around& interval, Tick tick) const {
   const Tick index = static_cast<Tick>(interval.index) + tick - interval.before->tick;
   if (index < 0 || index >= static_cast<Tick>(states_.size()) ||
       states_[static_cast<std::size_t>(index)]->tick != tick)
@@ -103,14 +103,15 @@ const ObjectStates& World::at_tick(const Around& interval, Tick tick) const {
   return *states_[static_cast<std::size_t>(index)];
 }
 
-bool World::has_states(std::size_t place, const Around& interval, const KnotTicks& knots) const {
+bool StateWindow::has_states(std::size_t place, const Around& interval,
+                             const KnotTicks& knots) const {
   for (Tick tick = knots.first; tick <= knots.last; ++tick)
     if (at_tick(interval, tick).code[place] != 0) return false;
   return true;
 }
 
-Motion World::of_higher_order(std::size_t place, const Around& interval, const KnotTicks& knots,
-                              double u) const {
+Motion StateWindow::of_higher_order(std::size_t place, const Around& interval,
+                                    const KnotTicks& knots, double u) const {
   const double tick_s = (interval.after->time - interval.before->time).seconds();
   const HermiteWeights w =
       hermite_weights(static_cast<int>(knots.first - interval.before->tick),
@@ -125,7 +126,7 @@ Motion World::of_higher_order(std::size_t place, const Around& interval, const K
   return motion;
 }
 
-Motion World::motion(std::size_t object, SimTime t) const {
+Motion StateWindow::motion(std::size_t object, SimTime t) const {
   const Around interval = around(t);
   const auto known = place(object);
   if (!known) throw Error("no states of object " + std::to_string(object));
@@ -142,7 +143,7 @@ Motion World::motion(std::size_t object, SimTime t) const {
                       {after->position(i), after->slope(i)});
 }
 
-std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime t) const {
+std::optional<Rotation<Gcrs, Body>> StateWindow::gcrs_from_body(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
   const auto k = place(i);
   if (!k) return std::nullopt;
@@ -154,7 +155,7 @@ std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime
       interpolate_attitude((t - before->time).seconds() / tick_s, tick_s, *start, *end));
 }
 
-std::optional<double> World::albedo(std::size_t i, SimTime t) const {
+std::optional<double> StateWindow::albedo(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
   const auto k = place(i);
   if (!k) return std::nullopt;
@@ -181,7 +182,7 @@ double rate_rad_per_s(double u, double tick_s, const AttitudeState& start,
 
 }  // namespace
 
-double World::turn_rad(std::size_t i, SimTime start, SimTime end) const {
+double StateWindow::turn_rad(std::size_t i, SimTime start, SimTime end) const {
   constexpr int steps = 8;  // parts of one tick, within which the rate is smooth
   const auto k = place(i);
   double turn = 0.0;
@@ -202,19 +203,19 @@ double World::turn_rad(std::size_t i, SimTime start, SimTime end) const {
   return turn;
 }
 
-EnvironmentState World::environment(SimTime t) const {
+EnvironmentState StateWindow::environment(SimTime t) const {
   for (auto state = environment_.rbegin(); state != environment_.rend(); ++state)
     if ((*state)->time <= t) return run_on(**state, t);
   throw Error("no environment at " + std::to_string(t.seconds()) + " s");
 }
 
-const EnvironmentState* World::environment_of(SimTime t) const {
+const EnvironmentState* StateWindow::environment_of(SimTime t) const {
   for (const auto& state : environment_)
     if (state->time == t) return state.get();
   return nullptr;
 }
 
-const SiteState* World::site(const std::string& sensor, SimTime t) const {
+const SiteState* StateWindow::site(const std::string& sensor, SimTime t) const {
   for (auto state = sites_.rbegin(); state != sites_.rend(); ++state)
     if ((*state)->sensor == sensor && (*state)->time <= t) return state->get();
   return nullptr;

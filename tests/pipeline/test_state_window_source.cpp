@@ -1,4 +1,4 @@
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 
 #include "core/sky/places/sun_moon.h"
 #include "tests/pipeline/harness.h"
@@ -25,11 +25,11 @@ Within within_exposure(double tick_s) {
   const Clock clock = make_clock(scenario);
   Threads threads(1);
   const ObjectPopulation none;
-  const WorldSource worlds(scenario, scenario.sensors[0], clock, close_environments_s);
-  const World world =
-      worlds.around(frame_times(scenario.sensors[0], 1), none, StateSource(none, clock, threads));
-  EXPECT_NE(world.site("eye", instant), nullptr);
-  const EnvironmentState environment = world.environment(instant);
+  const StateWindowSource windows(scenario, scenario.sensors[0], clock, close_environments_s);
+  const StateWindow window =
+      windows.around(frame_times(scenario.sensors[0], 1), none, StateSource(none, clock, threads));
+  EXPECT_NE(window.site("eye", instant), nullptr);
+  const EnvironmentState environment = window.environment(instant);
   const SolarSystem true_bodies = solar_system(clock.tt(instant));
   return {environment, norm(environment.sun_m - true_bodies.sun_m),
           norm(environment.moon_m - true_bodies.moon_m)};
@@ -37,7 +37,7 @@ Within within_exposure(double tick_s) {
 
 // Between environments Sun, Moon and Earth run on by their rates: one at each of the many short
 // ticks in an exposure would take minutes and change nothing.
-TEST(WorldSource, HasTheSameSkyByShortTicksWithFewEnvironments) {
+TEST(StateWindowSource, HasTheSameSkyByShortTicksWithFewEnvironments) {
   const Within coarse = within_exposure(0.1), fine = within_exposure(1e-4);
   EXPECT_EQ(coarse.environment.tick, 4);
   EXPECT_EQ(fine.environment.tick, 4000);  // not 4567: there is none at each tick
@@ -47,9 +47,9 @@ TEST(WorldSource, HasTheSameSkyByShortTicksWithFewEnvironments) {
   }
 }
 
-// A world that is computed gives the frame that the messages of the nodes give, to the bit: where
+// A window that is computed gives the frame that the messages of the nodes give, to the bit: where
 // the environment is published seldom, and ticks do not divide the exposures.
-TEST(WorldSource, IsWhatTheNodesPublish) {
+TEST(StateWindowSource, IsWhatTheNodesPublish) {
   for (const int order : {3, 7}) {
     test::Stage stage(
         "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 40, tick_s: 0.7, seed: 3, "
@@ -64,16 +64,16 @@ TEST(WorldSource, IsWhatTheNodesPublish) {
     const Clock clock = make_clock(stage.scenario);
     const ObjectPopulation population = load_objects(stage.scenario, clock);
     const StateSource states(population, clock, stage.threads);
-    const WorldSource worlds(stage.scenario, sensor, clock);
-    const World published = stage.world;
+    const StateWindowSource windows(stage.scenario, sensor, clock);
+    const StateWindow published = stage.states;
     for (const std::uint32_t number : {1u, 4u}) {
       const FrameTimes times = frame_times(sensor, number);
-      stage.world = published;
+      stage.states = published;
       const FrameProducts frame = stage.frame(number);
       EXPECT_GE(frame.truths.size(), 5u);
-      for (const World& world :
-           {worlds.around(times, population, states), worlds.until(times, population, states)}) {
-        stage.world = world;
+      for (const StateWindow& window :
+           {windows.around(times, population, states), windows.until(times, population, states)}) {
+        stage.states = window;
         EXPECT_EQ(stage.frame(number).counts.pixels, frame.counts.pixels) << order << " " << number;
       }
     }

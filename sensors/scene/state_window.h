@@ -22,11 +22,11 @@ struct Motion {
 Motion cubic_motion(double u, double tick_s, const Motion& before, const Motion& after);
 
 /// The published states around an exposure: the last few ticks of what actors said, interpolated.
-class World {
+class StateWindow {
  public:
-  World() = default;
+  StateWindow() = default;
   /// `last_tick`: of the run, where higher orders find no ticks beyond.
-  World(HermiteOrder order, Tick last_tick) : order_(order), last_tick_(last_tick) {}
+  StateWindow(HermiteOrder order, Tick last_tick) : order_(order), last_tick_(last_tick) {}
 
   void add(std::shared_ptr<const ObjectRoster> roster) { roster_ = std::move(roster); }
   void add(std::shared_ptr<const ObjectStates> states) { states_.push_back(std::move(states)); }
@@ -50,7 +50,7 @@ class World {
   Tick first_tick() const { return states_.empty() ? 0 : states_.front()->tick; }
   /// Ticks that the states in [start, end] are interpolated from.
   KnotTicks ticks_for(SimTime start, SimTime end) const;
-  /// Restricts the world to `objects`, ascending indices, with their states at `ticks_for` an
+  /// Restricts the window to `objects`, ascending indices, with their states at `ticks_for` an
   /// exposure: `states` has those of one tick, object k of which is `objects[k]`.
   void set_states(std::vector<std::uint32_t> objects, std::vector<ObjectStates> states);
 
