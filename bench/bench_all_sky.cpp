@@ -194,15 +194,9 @@ void measure_all_sky(bool json) {
   const std::string path = all_sky_scenario(directory);
   if (path.empty()) return;
   {
-    const Scenario scenario = load_scenario(path);
     Threads one(1);
-    const StateWindow window = window_of(scenario, one);
-    FramePipeline pipeline({.sensor = scenario.sensors[0],
-                            .clock = make_clock(scenario),
-                            .seed = 1,
-                            .digest = "bench",
-                            .faintest_star_mag = scenario.faintest_star_mag},
-                           load_stars(scenario), one);
+    AllSky sky(path, one);
+    const Scenario& scenario = sky.scenario;
     malloc_trim(0);
     print_figure({"all_sky_resting_mb", status_mb("VmRSS"), "MB"},
                  json);  // states, stars, programs
@@ -212,7 +206,7 @@ void measure_all_sky(bool json) {
     std::uint32_t stars = 0, objects = 0;
     const auto make = [&] {
       const double cpu = thread_seconds(), wall = wall_s();
-      const FrameProducts frame = pipeline.run(exposure, window);
+      const FrameProducts frame = sky.pipeline.run(exposure, sky.window);
       const double writing = thread_seconds();
       write_frame(fits, frame.counts, frame.header);
       measured.writing_s.push_back(thread_seconds() - writing);
@@ -235,7 +229,7 @@ void measure_all_sky(bool json) {
                   }),
                   "MB", "", 0, 80, true},
                  json);
-    print_shares(scenario, exposure, window, measured, 3 * std::size_t(stars), json);
+    print_shares(scenario, exposure, sky.window, measured, 3 * std::size_t(stars), json);
   }
   measure_tycho2(directory, json);
   std::filesystem::remove_all(directory);

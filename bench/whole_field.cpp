@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "bench/effect_scene.h"
 #include "bench/scene_dice.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
@@ -30,11 +31,7 @@ std::string time_with_sun_at(SceneDice& dice, double longitude_deg, double latit
   for (int tries = 0; tries < 500; ++tries) {
     month = 1 + dice.below(12), day = 1 + dice.below(28);
     const double hour = dice.uniform(0.0, 24.0);
-    const double season = 2.0 * pi * ((month - 1) * 30.4 + day + 10.0) / 365.0;
-    const double declination = -23.44 * deg * std::cos(season);
-    const double angle = ((hour - 12.0) * 15.0 + longitude_deg) * deg, at = latitude_deg * deg;
-    const double sine = std::sin(at) * std::sin(declination) +
-                        std::cos(at) * std::cos(declination) * std::cos(angle);
+    const double sine = sine_of_sun_altitude(month, day, hour, longitude_deg, latitude_deg);
     const double off_deg = std::abs(std::asin(std::clamp(sine, -1.0, 1.0)) / deg - wanted_deg);
     if (off_deg > nearest_deg) continue;
     nearest_deg = off_deg;

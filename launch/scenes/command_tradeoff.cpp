@@ -43,11 +43,8 @@ double in_budgets(const ErrorBound& error) {
 /// A logarithmic axis that holds all values.
 ChartAxis axis(const std::string& label, std::vector<double> values) {
   const auto [least, most] = std::ranges::minmax_element(values);
-  ChartAxis axis{.label = label, .logarithmic = true};
-  axis.least = values.empty() ? 0.1 : 0.8 * *least;
-  axis.most = values.empty() ? 1.0 : 1.25 * *most;
-  axis.ticks = logarithmic_ticks(axis.least, axis.most);
-  return axis;
+  if (values.empty()) return logarithmic_axis(label, 0.1, 1.0);
+  return logarithmic_axis(label, 0.8 * *least, 1.25 * *most);
 }
 
 /// A small cross, as lines of a series.
