@@ -25,7 +25,7 @@
 #include "core/image/fits_file.h"
 #include "orbit-node/load_objects.h"
 #include "sensors/frame/make_sensor.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 
 namespace dmise {
 namespace {
@@ -62,12 +62,13 @@ std::string scenario_text(const WrittenCatalogue& catalogue, const std::string& 
 }
 
 /// Inputs of a sensor from other nodes over the exposure, computed before it starts.
-World world_of(const Scenario& scenario, Threads& threads) {
+StateWindow window_of(const Scenario& scenario, Threads& threads) {
   const Clock clock = make_clock(scenario);
   const ObjectPopulation population = load_objects(scenario, clock);
   const StateSource states(population, clock, threads);
   const SensorConfig& sensor = scenario.sensors[0];
-  return WorldSource(scenario, sensor, clock).until(frame_times(sensor, 1), population, states);
+  return StateWindowSource(scenario, sensor, clock)
+      .until(frame_times(sensor, 1), population, states);
 }
 
 /// Peak memory of this process [MB] while `work` runs, as reported by the kernel. Pages of
@@ -104,11 +105,11 @@ void print_stages(const Measured& m, bool json) {
 }
 
 /// Prints parts that are interleaved with others in a frame, measured separately.
-void print_shares(const Scenario& scenario, const FrameTimes& exposure, const World& world,
+void print_shares(const Scenario& scenario, const FrameTimes& exposure, const StateWindow& window,
                   const Measured& m, std::size_t star_places, bool json) {
   const auto best =
       std::size_t(std::min_element(m.wall_s.begin(), m.wall_s.end()) - m.wall_s.begin());
-  const View view(scenario.sensors[0], exposure, world);
+  const View view(scenario.sensors[0], exposure, window);
   const auto map = load_stars(scenario);
   const EffectTimes& spent = m.effects[best];
   const EffectTimes shares =
@@ -121,7 +122,7 @@ void print_shares(const Scenario& scenario, const FrameTimes& exposure, const Wo
 struct AllSky {
   AllSky(const std::string& path, Threads& threads)
       : scenario(load_scenario(path)),
-        world(world_of(scenario, threads)),
+        window(window_of(scenario, threads)),
         pipeline({.sensor = scenario.sensors[0],
                   .clock = make_clock(scenario),
                   .seed = 1,
@@ -131,11 +132,11 @@ struct AllSky {
   /// Makes a frame; processor seconds.
   double make() {
     const double before = thread_seconds();
-    stars = pipeline.run(frame_times(scenario.sensors[0], 1), world).report.stars_rendered;
+    stars = pipeline.run(frame_times(scenario.sensors[0], 1), window).report.stars_rendered;
     return thread_seconds() - before;
   }
   Scenario scenario;
-  World world;
+  StateWindow window;
   FramePipeline pipeline;
   std::uint32_t stars = 0;
 };
@@ -193,15 +194,9 @@ void measure_all_sky(bool json) {
   const std::string path = all_sky_scenario(directory);
   if (path.empty()) return;
   {
-    const Scenario scenario = load_scenario(path);
     Threads one(1);
-    const World world = world_of(scenario, one);
-    FramePipeline pipeline({.sensor = scenario.sensors[0],
-                            .clock = make_clock(scenario),
-                            .seed = 1,
-                            .digest = "bench",
-                            .faintest_star_mag = scenario.faintest_star_mag},
-                           load_stars(scenario), one);
+    AllSky sky(path, one);
+    const Scenario& scenario = sky.scenario;
     malloc_trim(0);
     print_figure({"all_sky_resting_mb", status_mb("VmRSS"), "MB"},
                  json);  // states, stars, programs
@@ -211,7 +206,7 @@ void measure_all_sky(bool json) {
     std::uint32_t stars = 0, objects = 0;
     const auto make = [&] {
       const double cpu = thread_seconds(), wall = wall_s();
-      const FrameProducts frame = pipeline.run(exposure, world);
+      const FrameProducts frame = sky.pipeline.run(exposure, sky.window);
       const double writing = thread_seconds();
       write_frame(fits, frame.counts, frame.header);
       measured.writing_s.push_back(thread_seconds() - writing);
@@ -234,7 +229,7 @@ void measure_all_sky(bool json) {
                   }),
                   "MB", "", 0, 80, true},
                  json);
-    print_shares(scenario, exposure, world, measured, 3 * std::size_t(stars), json);
+    print_shares(scenario, exposure, sky.window, measured, 3 * std::size_t(stars), json);
   }
   measure_tycho2(directory, json);
   std::filesystem::remove_all(directory);

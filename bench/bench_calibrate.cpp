@@ -41,7 +41,7 @@ void measure(const std::string& path, std::map<std::string, StageTime>& stages,
   std::map<std::string, StageTime> best;
   for (int k = 0; k < repeats; ++k) {
     if (k > 0 && !frames.can_repeat()) chain = frames.pipeline(sensor, false);
-    FrameProducts frame = chain->run(frames.times(), frames.world());
+    FrameProducts frame = chain->run(frames.times(), frames.states());
     for (const auto& [name, time] : stage_times(frame.plan, frame.times, {})) {
       auto [known, first] = best.try_emplace(name, time);
       known->second.measured_s = std::min(known->second.measured_s, time.measured_s);

@@ -66,14 +66,20 @@ void measure_deposit(bool json) {
                json);
 }
 
-void measure_detector(bool json) {
-  Threads one(1);
+/// The detector that frames are exposed on.
+Detector exposed_detector() {
   Detector detector;
   detector.dark_e_per_s = 0.02;
   detector.read_noise_e = 9.3;
   detector.full_well_e = 25500;
   detector.gain_e_per_dn = 0.35;
   detector.bias_dn = 1000;
+  return detector;
+}
+
+void measure_detector(bool json) {
+  Threads one(1);
+  const Detector detector = exposed_detector();
   const ExpectedElectronImage light(columns, rows, 2000.0f);
   CountImage counts;
   EffectTimes times;
@@ -144,12 +150,7 @@ void measure_optics(bool json) {
                json);
   print_figure({"full_chain_4096_deposit_ms", 1e3 * begin_s, "ms", "full chain [ms]", 1e3 * ours},
                json);
-  Detector detector;
-  detector.dark_e_per_s = 0.02;
-  detector.read_noise_e = 9.3;
-  detector.full_well_e = 25500;
-  detector.gain_e_per_dn = 0.35;
-  detector.bias_dn = 1000;
+  const Detector detector = exposed_detector();
   CountImage counts;
   const double detector_s = seconds([&] {
     expose(light, detector, {.seed = 1, .sensor = "bench", .frame = 1, .exposure_s = 10}, {}, one,

@@ -46,7 +46,7 @@ Raced race(const SceneFrames& frames, const std::vector<Accuracy>& accuracies) {
       if (turn > 0 && !frames.can_repeat())
         chains[i] = frames.pipeline(planned_for(frames.sensor(), accuracies[i]), false);
       const double start = thread_seconds();
-      FrameProducts frame = chains[i]->run(frames.times(), frames.world());
+      FrameProducts frame = chains[i]->run(frames.times(), frames.states());
       const double seconds = thread_seconds() - start;
       if (seconds < raced.seconds[i]) {
         raced.seconds[i] = seconds;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -53,12 +54,7 @@ std::string draw_start(SceneDice& dice, double longitude_deg, double latitude_de
   for (int tries = 0; tries < 5; ++tries) {
     year = 2012 + dice.below(13), month = 1 + dice.below(12), day_of_month = 1 + dice.below(28);
     hour = dice.uniform(0.0, 24.0);
-    const double season = 2.0 * pi * ((month - 1) * 30.4 + day_of_month + 10.0) / 365.0;
-    const double declination = -23.44 * deg * std::cos(season);
-    const double angle = ((hour - 12.0) * 15.0 + longitude_deg) * deg, at = latitude_deg * deg;
-    const double sine = std::sin(at) * std::sin(declination) +
-                        std::cos(at) * std::cos(declination) * std::cos(angle);
-    day = sine > 0.0;
+    day = sine_of_sun_altitude(month, day_of_month, hour, longitude_deg, latitude_deg) > 0.0;
     if (!day || dice.chance(0.25)) break;
   }
   char text[96];
@@ -290,6 +286,15 @@ double draw_stars(Frame& f, const View& view, const std::filesystem::path& path)
 
 }  // namespace
 
+double sine_of_sun_altitude(int month, int day, double hour, double longitude_deg,
+                            double latitude_deg) {
+  const double season = 2.0 * pi * ((month - 1) * 30.4 + day + 10.0) / 365.0;
+  const double declination = -23.44 * deg * std::cos(season);
+  const double angle = ((hour - 12.0) * 15.0 + longitude_deg) * deg, at = latitude_deg * deg;
+  return std::sin(at) * std::sin(declination) +
+         std::cos(at) * std::cos(declination) * std::cos(angle);
+}
+
 EffectScene draw_effect_scene(std::uint64_t seed, int number,
                               const std::filesystem::path& directory, Threads& threads) {
   std::filesystem::create_directories(directory);
@@ -302,7 +307,7 @@ EffectScene draw_effect_scene(std::uint64_t seed, int number,
   {
     const Scenario empty = load_scenario(path);
     const SceneFrames frames(empty, "eye", 1, threads);
-    const View view(frames.sensor(), frames.times(), frames.world());
+    const View view(frames.sensor(), frames.times(), frames.states());
     count = std::max(int(f.tracks_object), f.dice.below(4));
     for (int i = 0; i < count; ++i) objects += draw_object(f, view, i);
     faintest = draw_stars(f, view, directory / "stars.csv");

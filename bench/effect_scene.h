@@ -6,6 +6,10 @@
 
 namespace dmise {
 
+/// Sine of the altitude of the Sun over a place, about, by its mean motion. Times are UTC.
+double sine_of_sun_altitude(int month, int day, double hour, double longitude_deg,
+                            double latitude_deg);
+
 /// A scene that was drawn at random: its scenario and star catalogue are files.
 struct EffectScene {
   int number = 0;

@@ -46,7 +46,7 @@ struct Planner {
   SensorConfig sensor = with_accuracy(frames.sensor(), standard_accuracy());
   ObjectShapes shapes{frames.scenario().own_objects, sensor.camera.band, sensor.effects};
   ExposurePlanner planner{sensor, stars.get(), frames.scenario().faintest_star_mag, &shapes};
-  View view{sensor, frames.times(), frames.world(), frames.scenario().seed};
+  View view{sensor, frames.times(), frames.states(), frames.scenario().seed};
   std::vector<std::size_t> objects = objects_in_field(view, &shapes);
 
   std::vector<PlannableEffect> effects() const {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "bench/effect_scene.h"
 #include "bench/scene_dice.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
@@ -30,11 +31,7 @@ std::string time_with_sun_at(SceneDice& dice, double longitude_deg, double latit
   for (int tries = 0; tries < 500; ++tries) {
     month = 1 + dice.below(12), day = 1 + dice.below(28);
     const double hour = dice.uniform(0.0, 24.0);
-    const double season = 2.0 * pi * ((month - 1) * 30.4 + day + 10.0) / 365.0;
-    const double declination = -23.44 * deg * std::cos(season);
-    const double angle = ((hour - 12.0) * 15.0 + longitude_deg) * deg, at = latitude_deg * deg;
-    const double sine = std::sin(at) * std::sin(declination) +
-                        std::cos(at) * std::cos(declination) * std::cos(angle);
+    const double sine = sine_of_sun_altitude(month, day, hour, longitude_deg, latitude_deg);
     const double off_deg = std::abs(std::asin(std::clamp(sine, -1.0, 1.0)) / deg - wanted_deg);
     if (off_deg > nearest_deg) continue;
     nearest_deg = off_deg;
@@ -155,7 +152,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   std::ofstream(trial.scene.path) << field.yaml;
   const SceneFrames frames(load_scenario(trial.scene.path), "eye", 1, threads);
   SensorConfig sensor = frames.sensor();
-  const View view(sensor, frames.times(), frames.world(), frames.scenario().seed);
+  const View view(sensor, frames.times(), frames.states(), frames.scenario().seed);
   const PlanFacts facts =
       ExposurePlanner(sensor, nullptr, frames.scenario().faintest_star_mag, nullptr)
           .facts(view, {});
@@ -166,7 +163,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   for (int level = 0; level < SkyGrid::facts.reference(); ++level) {
     SensorConfig as = sensor;
     as.effects.set_level(SkyGrid::facts, level);
-    const View looked(as, frames.times(), frames.world(), frames.scenario().seed);
+    const View looked(as, frames.times(), frames.states(), frames.scenario().seed);
     fill_sky(looked, SampledSky::drawn, image, threads);
     measured.push_back({.background_sigma = sampled.error_of(image)});
     trial.levels.push_back({.scene = number,
@@ -181,7 +178,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   for (const Accuracy& accuracy : {draft_accuracy(), standard_accuracy()}) {
     SensorConfig as = sensor;
     as.accuracy = accuracy;
-    const View asked(as, frames.times(), frames.world(), frames.scenario().seed);
+    const View asked(as, frames.times(), frames.states(), frames.scenario().seed);
     const EffectPlan plan =
         ExposurePlanner(as, nullptr, frames.scenario().faintest_star_mag, nullptr).plan(asked, {});
     trial.plans.push_back({number, accuracy.name, accuracy.budget, plan.error,

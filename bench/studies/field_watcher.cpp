@@ -21,7 +21,7 @@ class FieldWatcher : public Evaluator {
         clock_(make_clock(scenario)),
         tick_(scenario.tick),
         takes_states_(!scenario.network.sensors_propagate),
-        world_(scenario.interpolation, scenario.last_tick()) {}
+        window_(scenario.interpolation, scenario.last_tick()) {}
 
   std::string name() const override { return sensor_.name; }
   std::vector<std::string> produces() const override { return {detection_prefix + sensor_.name}; }
@@ -32,33 +32,33 @@ class FieldWatcher : public Evaluator {
 
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override {
     for (const Message& message : inputs) take_in(message);
-    if (!takes_states_) world_.add_tick(tick, {tick * tick_.ns});
+    if (!takes_states_) window_.add_tick(tick, {tick * tick_.ns});
     const FrameTimes exposure = frame_times(sensor_, frame_);
     if (exposure.end.ns > tick * tick_.ns) return {};
     if (states_) {
-      watch(states_->around(world_, sensor_, exposure), exposure);
+      watch(states_->around(window_, sensor_, exposure), exposure);
     } else {
-      watch(world_, exposure);
+      watch(window_, exposure);
     }
-    world_.forget_before(frame_times(sensor_, ++frame_).start);
+    window_.forget_before(frame_times(sensor_, ++frame_).start);
     return {};
   }
 
  private:
   void take_in(const Message& message) {
     const auto& state = message.state;
-    if (takes_states_ || !std::holds_alternative<ObjectRoster>(*state)) return world_.add(state);
+    if (takes_states_ || !std::holds_alternative<ObjectRoster>(*state)) return window_.add(state);
     const auto objects = propagated_objects(state, own_, clock_, wgs84);
-    world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
+    window_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
     states_.emplace(objects, tick_);
   }
 
   /// Places of the objects in the field at start, middle and end.
-  void watch(const World& world, const FrameTimes& exposure) {
-    const View view(sensor_, exposure, world);
+  void watch(const StateWindow& window, const FrameTimes& exposure) {
+    const View view(sensor_, exposure, window);
     for (const std::size_t i : objects_in_field(view))
       for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
-        path_m_ += norm(world.motion(i, t).position_m - view.observer(t).position_m);
+        path_m_ += norm(window.motion(i, t).position_m - view.observer(t).position_m);
   }
 
   SensorConfig sensor_;
@@ -66,7 +66,7 @@ class FieldWatcher : public Evaluator {
   Clock clock_;
   SimTime tick_;
   bool takes_states_;
-  World world_;
+  StateWindow window_;
   std::optional<StatesInField> states_;
   std::uint32_t frame_ = 1;
   double path_m_ = 0.0;

@@ -250,7 +250,7 @@ double sequence_seconds() {
     const SceneFrames scene(scenario, name, frames, one);
     const auto pipeline = scene.pipeline(scene.sensor(), false);
     for (std::uint32_t k = 1; k <= frames; ++k) {
-      FrameProducts frame = pipeline->run(frame_times(scene.sensor(), k), scene.world());
+      FrameProducts frame = pipeline->run(frame_times(scene.sensor(), k), scene.states());
       write_frame((directory / (name + "-" + std::to_string(k) + ".fits")).string(), frame.counts,
                   frame.header);
       pipeline->give_back(std::move(frame.counts));

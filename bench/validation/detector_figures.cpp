@@ -246,11 +246,7 @@ Chart completeness_chart(const std::vector<DetectorFigures>& sensors, const std:
       .title =
           kind == streak_sensor ? "Streaks among round stars" : "Points among stars that trail",
       .subtitle = "share that is found, and the mean probability that dmise survey expects",
-      .x = {.label = "SNR of the ideal matched filter",
-            .least = min_charted_snr,
-            .most = max_charted_snr,
-            .logarithmic = true,
-            .ticks = logarithmic_ticks(min_charted_snr, max_charted_snr)},
+      .x = logarithmic_axis("SNR of the ideal matched filter", min_charted_snr, max_charted_snr),
       .y = {.label = "completeness",
             .ticks = {{0.0, "0"}, {0.25, "0.25"}, {0.5, "0.5"}, {0.75, "0.75"}, {1.0, "1"}}}};
   for (const DetectorFigures& f : sensors) {

@@ -16,7 +16,7 @@
 #include "orbit-node/load_objects.h"
 #include "sensors/frame/frame_pipeline.h"
 #include "sensors/frame/make_sensor.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/survey/exposure_forecast.h"
 
 namespace dmise {
@@ -115,11 +115,11 @@ std::vector<Placed> place_objects(Scenario& scenario, const Clock& clock, Thread
   const ObjectPopulation none;
   const StateSource source(none, clock, threads);
   for (const SensorConfig& sensor : scenario.sensors) {
-    const WorldSource worlds(scenario, sensor, clock);
+    const StateWindowSource windows(scenario, sensor, clock);
     for (std::uint32_t f = 1; f <= frames_within(sensor, scenario.duration); ++f) {
       const FrameTimes times = frame_times(sensor, f);
-      const World world = worlds.around(times, none, source);
-      const View view(sensor, times, world, scenario.seed);
+      const StateWindow window = windows.around(times, none, source);
+      const View view(sensor, times, window, scenario.seed);
       for (std::uint32_t k = 0; k < side * side; ++k) {
         all.push_back({&sensor, f});
         scenario.own_objects.push_back(
@@ -206,14 +206,14 @@ ScoreInput render(const Scenario& scenario, const Clock& clock, Threads& threads
   for (const SensorConfig& sensor : scenario.sensors) {
     const Optics& optics = sensor.camera.optics;
     const RunSensor described{.name = sensor.name, .columns = optics.columns, .rows = optics.rows};
-    const WorldSource worlds(scenario, sensor, clock);
+    const StateWindowSource windows(scenario, sensor, clock);
     const bool points = sensor.name == point_sensor;
     PipelineSettings settings = sensor_settings(scenario, sensor.name, "");
     settings.star_truth = points;
     FramePipeline pipeline(std::move(settings), stars, threads);
     for (std::uint32_t f = 1; f <= frames_within(sensor, scenario.duration); ++f) {
       const FrameTimes times = frame_times(sensor, f);
-      FrameProducts frame = pipeline.run(times, worlds.around(times, population, source));
+      FrameProducts frame = pipeline.run(times, windows.around(times, population, source));
       add_frame(frame, described, input);
       if (points) add_distances(frame, out);
       pipeline.give_back(std::move(frame.counts));

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "bench/validation/real_cameras.h"
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/error.h"
 #include "core/base/files/fits_guard.h"
 #include "core/base/files/text_fields.h"
 #include "core/base/formatted.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/config/make_clock.h"
 #include "core/config/scenario_text.h"
 #include "core/detection/light/psf.h"
@@ -19,7 +19,7 @@
 #include "core/ingest/any_frame.h"
 #include "core/photometry/magnitude.h"
 #include "sensors/forecast/sensor_forecast.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/scene/throughput.h"
 
 namespace dmise {
@@ -101,17 +101,17 @@ PredictedFrame predicted(Scenario scenario, double fwhm_px, Threads& threads) {
       sensor_forecast(scenario, sensor, none, clock, nullptr, threads, {.max_frames = 0});
   const FrameForecast& middle = *forecast.mid_run;
   const FrameTimes times = frame_times(sensor, middle.frame);
-  const WorldSource worlds(scenario, sensor, clock);
+  const StateWindowSource windows(scenario, sensor, clock);
   const StateSource source(none, clock, threads);
-  const World world = worlds.around(times, none, source);
-  const Throughput throughput(View(sensor, times, world, scenario.seed));
+  const StateWindow window = windows.around(times, none, source);
+  const Throughput throughput(View(sensor, times, window, scenario.seed));
   SensorConfig without = sensor;
   without.sky.parts.twilight.reset();
   const double colour_mag = sensor.camera.magnitudes.solar_colour_mag;
   return {.zero_point_mag = throughput.zero_point_mag() + colour_mag - middle.extinction_mag,
           .sky_e = middle.background.electrons,
           .twilight_e =
-              middle.background.electrons - sky_of(View(without, times, world, scenario.seed)),
+              middle.background.electrons - sky_of(View(without, times, window, scenario.seed)),
           .noise_e = middle.background.noise_e,
           .limit_mag = middle.point_limit_v_mag.value_or(NAN) + colour_mag,
           .sun_deg = middle.sun_elevation_rad.value_or(0.0) / deg,

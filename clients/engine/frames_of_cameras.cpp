@@ -16,7 +16,7 @@
 #include "clients/engine/arrays.h"
 #include "clients/engine/engine.h"
 #include "clients/engine/interruptible.h"
-#include "core/calibration/calibrated_detection.h"
+#include "core/astrometry/calibrated_detection.h"
 #include "core/config/load_star_catalogue.h"
 #include "core/detection/detection_lines.h"
 #include "core/ingest/any_frame.h"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/astrometry/solve_frame.h"
+#include "core/astrometry/star_sources.h"
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/numeric/chi_square.h"
 #include "core/base/numeric/quantile.h"
-#include "core/calibration/solve_frame.h"
-#include "core/calibration/star_sources.h"
 #include "core/camera_calibration/star_detector.h"
 #include "core/camera_calibration/star_zero_point.h"
 #include "core/detection/known/atmosphere.h"

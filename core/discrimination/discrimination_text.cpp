@@ -49,14 +49,6 @@ void write_points(JsonWriter& json, const char* key, const char* what,
 
 constexpr Colour blue = {0, 114, 178};
 
-ChartAxis logarithmic_axis(const char* label, double least, double most) {
-  return {.label = label,
-          .least = least,
-          .most = most,
-          .logarithmic = true,
-          .ticks = logarithmic_ticks(least, most)};
-}
-
 bool was_left_out(const RunSpectra& spectra, const std::string& object) {
   const std::string named = " " + object + ": ";
   return std::any_of(spectra.left_out.begin(), spectra.left_out.end(),

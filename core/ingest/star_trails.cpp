@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/astrometry/star_sources.h"
 #include "core/base/formatted.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
-#include "core/calibration/star_sources.h"
 #include "core/detection/known/star_motion.h"
 #include "core/detection/light/psf.h"
 #include "core/detection/make_report.h"

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/parallel.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/score/score_input.h"
 
 namespace dmise {

@@ -16,11 +16,7 @@ constexpr double min_snr = 1.0;
 ChartAxis snr_axis(const Score& score) {
   double most = 100.0;
   for (const ScoredTruth& t : score.truths) most = std::max(most, 1.2 * t.snr.value_or(0.0));
-  return {.label = "expected SNR of the matched filter",
-          .least = min_snr,
-          .most = most,
-          .logarithmic = true,
-          .ticks = logarithmic_ticks(min_snr, most)};
+  return logarithmic_axis("expected SNR of the matched filter", min_snr, most);
 }
 
 ChartAxis linear_axis(const char* label, double least, double most, double step) {
@@ -117,11 +113,7 @@ Chart magnitude_chart(const Score& score) {
                             [](double error) { return std::clamp(std::abs(error), least, most); });
   chart.title = "Error of flux";
   chart.subtitle = "electrons in the frame, measured over true; bound on a background: 1.086 / SNR";
-  chart.y = {.label = "absolute error [mag]",
-             .least = least,
-             .most = most,
-             .logarithmic = true,
-             .ticks = logarithmic_ticks(least, most)};
+  chart.y = logarithmic_axis("absolute error [mag]", least, most);
   chart.series.push_back(
       {.label = "bound",
        .colour = orange,

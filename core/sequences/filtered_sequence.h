@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/astrometry/star_sources.h"
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/calibration/star_sources.h"
 #include "core/detection/light/psf.h"
 #include "core/detection/pixels/background.h"
 #include "core/sequences/sequence_frame.h"

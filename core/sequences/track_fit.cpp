@@ -82,14 +82,22 @@ std::vector<FrameView> views_of(const TrackScene& scene, const SkyMotion& start)
   return views;
 }
 
-double amplitude_of(const std::vector<FrameView>& views, const std::vector<SnrAt>& seen) {
+/// Light of all frames that are used, by their weights.
+struct AddedLight {
   double light = 0.0, weight = 0.0;
+
+  double amplitude_e() const { return weight > 0 ? light / weight : 0.0; }
+  double snr() const { return light / std::sqrt(weight); }
+};
+
+AddedLight added_light(const std::vector<FrameView>& views, const std::vector<SnrAt>& seen) {
+  AddedLight sum;
   for (std::size_t k = 0; k < views.size(); ++k) {
     if (!views[k].used) continue;
-    light += seen[k].weight * seen[k].snr;
-    weight += seen[k].weight * seen[k].weight;
+    sum.light += seen[k].weight * seen[k].snr;
+    sum.weight += seen[k].weight * seen[k].weight;
   }
-  return weight > 0 ? light / weight : 0.0;
+  return sum;
 }
 
 /// Leaves out frames in which something brighter than a faint track is at its place.
@@ -309,7 +317,7 @@ std::optional<MovingTrack> fit_track(const TrackScene& scene, const SkyMotion& s
     seen = seen_by(scene.light, views, track.motion);
     leave_out_brighter(views, seen);
     if (step >= first_steps) leave_out_displaced(views, seen, sigma_px);
-    track.amplitude_e = amplitude_of(views, seen);
+    track.amplitude_e = added_light(views, seen).amplitude_e();
     if (!(track.amplitude_e > 0)) return std::nullopt;
     equations = equations_of(views, seen, track.amplitude_e, sigma_px);
     add_prior(equations, track.motion.acceleration, acceleration);
@@ -322,13 +330,7 @@ std::optional<MovingTrack> fit_track(const TrackScene& scene, const SkyMotion& s
       return std::nullopt;
   }
   set_points(scene, views, seen, track);
-  double light = 0.0, weight = 0.0;
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    if (!views[k].used) continue;
-    light += seen[k].weight * seen[k].snr;
-    weight += seen[k].weight * seen[k].weight;
-  }
-  track.snr = light / std::sqrt(weight);
+  track.snr = added_light(views, seen).snr();
   track.covariance = covariance_of(equations.information, equations.noise);
   for (auto& row : track.covariance)
     for (double& v : row) v *= 1 + neglected_orders / (track.snr * track.snr);

@@ -1,15 +1,45 @@
 #include "core/visibility/sightings.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
+#include "core/frames/rotation_angle.h"
 #include "core/visibility/batch_states.h"
-#include "core/visibility/camera_motion.h"
 #include "core/visibility/crossing.h"
 #include "core/visibility/orbit_bound.h"
+#include "core/visibility/sensor_track.h"
 
 namespace dmise {
 namespace {
+
+/// Linear and angular speed of a camera over some time, in the axes in which objects are bounded.
+struct CameraMotion {
+  double speed_m_per_s = 0.0;   // in TEME
+  double turn_rad_per_s = 0.0;  // its own axes turn in TEME
+};
+
+constexpr double motion_margin = 1.25;
+
+/// Bound from the camera at two instants some seconds apart, plus a quarter. Zero for a camera
+/// fixed to the Earth, in axes that rotate with it; zero turn for one fixed relative to the stars;
+/// infinite if the camera exists at only one of the instants, 0 if at none.
+CameraMotion camera_motion(const SensorTrack& track, const CameraMoment& a, const CameraMoment& b) {
+  if (track.fixed_to_earth() || (!a.there && !b.there)) return {};
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (!a.there || !b.there) return {.speed_m_per_s = infinite, .turn_rad_per_s = infinite};
+  const double share = motion_margin / (b.time - a.time).seconds();
+  CameraMotion motion{.speed_m_per_s = share * norm(b.apex_m - a.apex_m)};
+  if (!track.fixed_to_stars())
+    motion.turn_rad_per_s =
+        share * rotation_angle_rad(a.camera_from_teme * b.camera_from_teme.inverse());
+  return motion;
+}
+
+/// The maximum of each.
+CameraMotion either(const CameraMotion& a, const CameraMotion& b) {
+  return {std::max(a.speed_m_per_s, b.speed_m_per_s), std::max(a.turn_rad_per_s, b.turn_rad_per_s)};
+}
 
 /// Maximum distance of neighbouring instants, from which a camera's motion is bounded.
 constexpr double longest_look_s = 10.0;
@@ -19,6 +49,36 @@ constexpr double bound_holds_s = 3600.0;
 
 OrbitBound bound_of(const BatchStates& states, std::size_t i) {
   return states.code[i] ? OrbitBound{} : orbit_bound(states.place_m(i), states.speed_m_per_s(i));
+}
+
+/// An object that is visible at all instants from `first` to `last` of a grid.
+struct SeenRun {
+  std::uint32_t object = 0;
+  std::size_t first = 0, last = 0;
+};
+
+/// Intervals by object, then time: consecutive runs are merged, and each crossing [between two
+/// instants that are in no run] is an interval. Input in any order.
+std::vector<VisibilityInterval> intervals_of(std::vector<SeenRun> runs,
+                                             std::vector<VisibilityInterval> crossings,
+                                             const FineGrid& grid) {
+  std::sort(runs.begin(), runs.end(), [](const SeenRun& a, const SeenRun& b) {
+    return a.object != b.object ? a.object < b.object : a.first < b.first;
+  });
+  std::vector<VisibilityInterval> all = std::move(crossings);
+  for (std::size_t k = 0; k < runs.size();) {
+    SeenRun run = runs[k++];
+    while (k < runs.size() && runs[k].object == run.object && runs[k].first == run.last + 1)
+      run.last = runs[k++].last;
+    const bool from_start = run.first == 0, to_end = run.last == grid.steps();
+    all.push_back({run.object, grid.at(from_start ? run.first : run.first - 1), grid.at(run.first),
+                   grid.at(run.last), grid.at(to_end ? run.last : run.last + 1), from_start,
+                   to_end});
+  }
+  std::sort(all.begin(), all.end(), [](const VisibilityInterval& a, const VisibilityInterval& b) {
+    return a.object != b.object ? a.object < b.object : a.in_first < b.in_first;
+  });
+  return all;
 }
 
 class Search {

@@ -5,7 +5,6 @@
 #include "core/base/parallel.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/time_grid.h"
-#include "core/visibility/visibility_interval.h"
 
 namespace dmise {
 
@@ -24,6 +23,17 @@ struct LostObject {
   std::uint32_t object = 0;
   Sgp4Code code = Sgp4Code::ok;
   SimTime time;  // first such instant
+};
+
+/// An object is visible from `in_first` to `in_last` and invisible at `out_before` and `out_after`,
+/// except at ends of the span. It may be as short as a crossing between two examined instants.
+struct VisibilityInterval {
+  std::uint32_t object = 0;
+  SimTime out_before, in_first, in_last, out_after;
+  bool open_start = false;  // visible at the span's beginning
+  bool open_end = false;    // and at its end
+
+  bool operator==(const VisibilityInterval&) const = default;
 };
 
 struct Sightings {

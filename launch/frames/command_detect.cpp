@@ -2,21 +2,50 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/base/units.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/detection/detection_lines.h"
+#include "core/image/known_defects.h"
+#include "core/ingest/any_frame.h"
 #include "core/ingest/star_trails.h"
+#include "core/sequences/detect_sequence.h"
+#include "core/sequences/sequence_frame.h"
+#include "core/sequences/sequence_lines.h"
 #include "launch/command/command.h"
 #include "launch/command/common_options.h"
+#include "launch/command/notes.h"
 #include "launch/frames/frame_options.h"
-#include "launch/frames/frame_sequence.h"
+#include "launch/run/progress.h"
 #include "launch/run/star_catalogue_option.h"
 
 namespace dmise {
 namespace {
+
+/// A frame of a file as one of a sequence, without the pixels that its camera knows to be hot.
+SequenceFrame frame_of_sequence(const std::string& path, const Frame& frame) {
+  if (const auto calibrated = without_hot_pixels(frame))
+    return {path, calibrated->counts, calibrated->header, calibrated->unusable};
+  return {path, frame.counts, frame.header, frame.unusable};
+}
+
+/// Prints what moves over frames, a line of JSON each. `max_rate_rad_per_s`: 0 for the default.
+void print_sequence(std::vector<SequenceFrame> frames, double max_rate_rad_per_s,
+                    Threads& threads) {
+  Progress progress;
+  SequenceSearch search;
+  if (max_rate_rad_per_s > 0) search.max_rate_rad_per_s = max_rate_rad_per_s;
+  search.progress = [&](double share) { progress.show_share(share, "shifting and adding frames"); };
+  const SequenceResult found = detect_sequence(std::move(frames), search, threads);
+  progress.clear_line();
+  for (const std::string& note : found.notes) print_note(note);
+  for (std::size_t i = 0; i < found.tracks.size(); ++i)
+    std::printf("%s\n", to_json(found.tracks[i], std::uint32_t(i + 1)).c_str());
+}
 
 struct DetectOptions {
   std::vector<std::string> frames;

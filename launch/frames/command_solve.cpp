@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/astrometry/solve_frame.h"
 #include "core/base/error.h"
 #include "core/base/files/regular_file.h"
 #include "core/base/units.h"
-#include "core/calibration/solve_frame.h"
 #include "core/ingest/star_trails.h"
 #include "launch/command/command.h"
 #include "launch/command/common_options.h"

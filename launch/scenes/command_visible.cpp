@@ -24,7 +24,7 @@
 #include "launch/scenes/pass_list.h"
 #include "launch/scenes/range_figure.h"
 #include "orbit-node/orbit_actor.h"
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 
 namespace dmise {
 namespace {

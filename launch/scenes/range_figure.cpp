@@ -135,12 +135,12 @@ Chart range_figure(const SensorTrack& track, const TimeGrid& grid,
              .least = 0.0,
              .most = std::max((grid.last() - grid.from).seconds(), 1e-3) / 3600.0,
              .ticks = time_ticks(clock, grid)};
-  chart.y = {.label = "Range [km]", .least = 200.0, .most = 50000.0, .logarithmic = true};
+  double least_km = 200.0, most_km = 50000.0;
   if (farthest_km > 0.0) {
-    chart.y.least = std::max(1e-3, nearest_km / 1.2);
-    chart.y.most = std::max(farthest_km * 1.2, chart.y.least * 3.0);
+    least_km = std::max(1e-3, nearest_km / 1.2);
+    most_km = std::max(farthest_km * 1.2, least_km * 3.0);
   }
-  chart.y.ticks = logarithmic_ticks(chart.y.least, chart.y.most);
+  chart.y = logarithmic_axis("Range [km]", least_km, most_km);
   for (std::size_t k = 0; k < kind_count; ++k) {
     if (series[k].lines.empty()) continue;
     series[k].label = std::string(kinds[k].name) + " (" + std::to_string(objects[k]) + ")";

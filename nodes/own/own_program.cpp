@@ -2,12 +2,16 @@
 
 #include <signal.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <thread>
 
+#include "core/base/error.h"
 #include "core/base/printable.h"
 #include "nodes/runtime/process/last_line.h"
 #include "nodes/runtime/process/monotonic_clock.h"
@@ -18,6 +22,14 @@
 
 namespace dmise {
 namespace {
+
+constexpr std::size_t longest_directory = 80;  // the address of a local socket has 107 characters
+
+std::string place_for_temporary_files() {
+  std::error_code error;
+  const std::string path = std::filesystem::temp_directory_path(error).string();
+  return error || path.size() > longest_directory ? "/tmp" : path;
+}
 
 using std::chrono::milliseconds;
 
@@ -41,6 +53,16 @@ std::string end_text(int status) {
 }
 
 }  // namespace
+
+PrivateEndpoint::PrivateEndpoint() : directory_(place_for_temporary_files() + "/dmise-XXXXXX") {
+  if (!mkdtemp(directory_.data()))
+    throw Error(directory_ + ": can't be made: " + std::strerror(errno));
+}
+
+PrivateEndpoint::~PrivateEndpoint() {
+  unlink(path().c_str());
+  rmdir(directory_.c_str());
+}
 
 /// What an ended program has said last, and where.
 std::string OwnProgram::last_words() const {

@@ -11,10 +11,26 @@
 #include "core/base/instant.h"
 #include "nodes/own/own_model.h"
 #include "nodes/own/own_node_run.h"
-#include "nodes/own/private_endpoint.h"
 #include "nodes/runtime/process/event.h"
 
 namespace dmise {
+
+/// An address of this machine that only this user can connect to: a socket in a directory of its
+/// own, which is removed with this object. Connections last.
+class PrivateEndpoint {
+ public:
+  /// Throws `Error` if there is no place for temporary files.
+  PrivateEndpoint();
+  ~PrivateEndpoint();
+  PrivateEndpoint(const PrivateEndpoint&) = delete;
+  PrivateEndpoint& operator=(const PrivateEndpoint&) = delete;
+
+  std::string address() const { return "ipc://" + path(); }
+
+ private:
+  std::string path() const { return directory_ + "/socket"; }
+  std::string directory_;
+};
 
 /// How a program is started and how long it may be silent.
 struct ProgramSettings {

@@ -7,7 +7,7 @@
 #include "core/score/association.h"
 #include "sensors/frame/frame_pipeline.h"
 #include "sensors/frame/make_sensor.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 
 namespace dmise {
 namespace {
@@ -105,7 +105,7 @@ RenderedCheck check_rendered(const SurveyScene& scene, std::size_t count, FrameH
       frames.push_back(all[std::size_t((double(k) + 0.5) * double(all.size()) / double(wanted))]);
     const ExposureForecaster looks(scene, *sensor);
     const auto objects = objects_by_frame(scene, *sensor, frames, threads);
-    const WorldSource worlds(scenario, *sensor, scene.clock());
+    const StateWindowSource windows(scenario, *sensor, scene.clock());
     FramePipeline pipeline(sensor_settings(scenario, sensor->name, ""), scene.stars(), threads);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       if (options.progress)
@@ -114,7 +114,7 @@ RenderedCheck check_rendered(const SurveyScene& scene, std::size_t count, FrameH
       const auto expected = looks.of(times, objects[k]);
       if (!expected) continue;
       FrameProducts frame =
-          pipeline.run(times, worlds.around(times, scene.population(), scene.source()));
+          pipeline.run(times, windows.around(times, scene.population(), scene.source()));
       for (auto& object : joined(scene, *expected, frame))
         check.objects.push_back(std::move(object));
       ++check.frames;

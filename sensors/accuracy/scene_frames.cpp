@@ -6,7 +6,7 @@
 #include "core/config/make_clock.h"
 #include "orbit-node/load_objects.h"
 #include "sensors/frame/make_sensor.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 
 namespace dmise {
 namespace {
@@ -20,16 +20,17 @@ FrameTimes times_of(const Scenario& scenario, const std::string& sensor, std::ui
   return frame_times(config, frame);
 }
 
-/// The world of the exposure; of all before it, too, where the detector keeps charge in traps.
-World world_of(const Scenario& scenario, const SensorConfig& sensor, const FrameTimes& times,
-               Threads& threads) {
+/// The states around the exposure; around all before it, too, where the detector keeps charge in
+/// traps.
+StateWindow window_of(const Scenario& scenario, const SensorConfig& sensor, const FrameTimes& times,
+                      Threads& threads) {
   const Clock clock = make_clock(scenario);
   const ObjectPopulation population = load_objects(scenario, clock);
   const StateSource states(population, clock, threads);
-  const WorldSource worlds(scenario, sensor, clock);
+  const StateWindowSource windows(scenario, sensor, clock);
   return sensor.camera.detector.persistence_fraction > 0.0
-             ? worlds.until(times, population, states)
-             : worlds.around(times, population, states);
+             ? windows.until(times, population, states)
+             : windows.around(times, population, states);
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ SceneFrames::SceneFrames(const Scenario& scenario, const std::string& sensor, st
       name_(sensor),
       times_(times_of(scenario_, name_, frame)),
       threads_(threads),
-      world_(world_of(scenario_, this->sensor(), times_, threads)),
+      window_(window_of(scenario_, this->sensor(), times_, threads)),
       stars_(load_stars(scenario_)) {}
 
 Exposure SceneFrames::exposure() const { return exposure_of(sensor(), times_, scenario_.seed); }
@@ -64,7 +65,7 @@ std::unique_ptr<FramePipeline> SceneFrames::pipeline(const SensorConfig& as, boo
 }
 
 FrameProducts SceneFrames::make(const SensorConfig& as) const {
-  return pipeline(as, true)->run(times_, world_);
+  return pipeline(as, true)->run(times_, window_);
 }
 
 }  // namespace dmise

@@ -16,7 +16,7 @@ class SceneFrames {
   const Scenario& scenario() const { return scenario_; }
   const SensorConfig& sensor() const { return sensor_named(scenario_, name_); }
   const FrameTimes& times() const { return times_; }
-  const World& world() const { return world_; }
+  const StateWindow& states() const { return window_; }
   const std::shared_ptr<const StarMap>& stars() const { return stars_; }
   Exposure exposure() const;
   Threads& threads() const { return threads_; }
@@ -34,7 +34,7 @@ class SceneFrames {
   std::string name_;
   FrameTimes times_;
   Threads& threads_;
-  World world_;
+  StateWindow window_;
   std::shared_ptr<const StarMap> stars_;
 };
 

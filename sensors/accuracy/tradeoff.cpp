@@ -34,7 +34,7 @@ double processor_s() {
 
 double seconds_of(FramePipeline& chain, const SceneFrames& scene) {
   const double start_s = processor_s();
-  FrameProducts frame = chain.run(scene.times(), scene.world());
+  FrameProducts frame = chain.run(scene.times(), scene.states());
   const double seconds = processor_s() - start_s;
   chain.give_back(std::move(frame.counts));
   return seconds;
@@ -73,7 +73,7 @@ StatedErrors stated_errors(const SceneFrames& scene, const SensorConfig& sensor)
   const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
                             models_of(scenario.objects));
   const ExposurePlanner planner(sensor, scene.stars().get(), scenario.faintest_star_mag, &shapes);
-  const View view(sensor, scene.times(), scene.world(), scenario.seed);
+  const View view(sensor, scene.times(), scene.states(), scenario.seed);
   std::vector<std::size_t> objects;
   if (sensor.effects.has(SpaceObjects::facts)) objects = objects_in_field(view, &shapes);
   SceneFacts facts = scene_facts(sensor);

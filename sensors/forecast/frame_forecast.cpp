@@ -60,8 +60,8 @@ FrameForecast frame_forecast(const View& view, const ForecastScene& scene) {
   out.boresight_hidden =
       hides(boresight) || (out.boresight_elevation_rad && *out.boresight_elevation_rad < 0.0);
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {
-    const auto index = object_index(view.world().roster(), target->object, target->where);
-    const Vec<Gcrs> position_m = view.world().motion(index, middle).position_m;
+    const auto index = object_index(view.states().roster(), target->object, target->where);
+    const Vec<Gcrs> position_m = view.states().motion(index, middle).position_m;
     const Vec<Gcrs> line = position_m - here_m;
     if (view.on_ground()) out.target_elevation_rad = elevation_over(up, unit(line));
     out.target_hidden = view.on_ground() ? *out.target_elevation_rad < 0.0

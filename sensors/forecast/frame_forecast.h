@@ -62,7 +62,7 @@ inline constexpr double usual_rate_deg_per_s = 0.42;
 inline constexpr double near_range_m = 500e3;
 
 /// Further inputs besides the view. `stars`, `shapes` and `planner` may be null. Objects are
-/// counted if `count_objects`, because the world may hold only some of them.
+/// counted if `count_objects`, because the states may be of some of them alone.
 struct ForecastScene {
   std::shared_ptr<const StarMap> stars;
   double faintest_star_mag = 0.0;

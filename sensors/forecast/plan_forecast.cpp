@@ -2,7 +2,7 @@
 
 #include "core/effects/frame_effects.h"
 #include "sensors/objects/objects_in_field.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
@@ -21,11 +21,11 @@ std::vector<PlanSpan> plan_forecast(const Scenario& scenario, const SensorConfig
   const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects,
                             models_of(scenario.objects));
   const ExposurePlanner planner(sensor, stars, scenario.faintest_star_mag, &shapes);
-  const WorldSource worlds(scenario, sensor, clock, close_environments_s);
+  const StateWindowSource windows(scenario, sensor, clock, close_environments_s);
   for (const std::uint32_t frame : evenly(frames_within(sensor, scenario.duration), max_frames)) {
     const FrameTimes exposure = frame_times(sensor, frame);
-    const World world = worlds.around(exposure, seen, source);
-    const View view(sensor, exposure, world, scenario.seed);
+    const StateWindow window = windows.around(exposure, seen, source);
+    const View view(sensor, exposure, window, scenario.seed);
     EffectPlan plan = planner.plan(
         view, wants_objects ? objects_in_field(view, &shapes) : std::vector<std::size_t>());
     if (!spans.empty() && spans.back().plan.effects == plan.effects &&

@@ -10,7 +10,7 @@
 #include "core/effects/frame_effects.h"
 #include "sensors/forecast/forecast_text.h"
 #include "sensors/objects/objects_in_field.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/planning/exposure_planner.h"
 
 namespace dmise {
@@ -52,15 +52,16 @@ std::string node_of(const ObjectPopulation& objects) {
 /// Examines all frames, or evenly spaced ones, for bodies that are too near to the axis.
 void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
                         const ObjectPopulation& needed, const StateSource& source,
-                        std::uint32_t frames, const WorldSource& worlds, SensorForecast& out) {
+                        std::uint32_t frames, const StateWindowSource& windows,
+                        SensorForecast& out) {
   const Exclusion& limits = sensor.camera.exclusion;
   for (const ExcludingBody& body : excluding_bodies)
     if (const auto& limit_deg = limits.*body.limit_deg)
       out.excluded.push_back({.body = &body, .limit_deg = *limit_deg});
   for (const std::uint32_t frame : evenly(frames, max_frames_with_states)) {
     const FrameTimes exposure = frame_times(sensor, frame);
-    const World world = worlds.around(exposure, needed, source);
-    const View view(sensor, exposure, world, scenario.seed);
+    const StateWindow window = windows.around(exposure, needed, source);
+    const View view(sensor, exposure, window, scenario.seed);
     const BodyAngles angles = body_angles(view);
     const Excluded in_force = excluded_by(limits, angles);
     ++out.looked_for_exclusion;
@@ -100,17 +101,17 @@ SensorForecast sensor_forecast(const Scenario& scenario, const SensorConfig& sen
   if (loss && loss->frame == 1) throw ConfigError(sensor.where + ": " + loss->why);
   const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
 
-  const WorldSource worlds(scenario, sensor, clock, close_environments_s);
+  const StateWindowSource windows(scenario, sensor, clock, close_environments_s);
   if (options.max_frames > 0 && sensor.camera.exclusion.any()) {
     out.exclusion_action = sensor.camera.exclusion.action;
-    look_for_exclusion(scenario, sensor, needed, source_of_needed, frames, worlds, out);
+    look_for_exclusion(scenario, sensor, needed, source_of_needed, frames, windows, out);
   }
   std::uint32_t looks = options.max_frames;
   if (looks == 0) {
     out.objects_counted = false;
   } else if (frames > 0 && sensor.effects.has(SpaceObjects::facts) &&
              !population.roster.objects.empty()) {
-    const auto ticks = worlds.ticks_of(frame_times(sensor, 1));
+    const auto ticks = windows.ticks_of(frame_times(sensor, 1));
     const std::size_t states =
         3 * std::size_t(ticks.last - ticks.first + 1) * population.roster.objects.size();
     if (options.max_states / states < 2)
@@ -131,8 +132,8 @@ SensorForecast sensor_forecast(const Scenario& scenario, const SensorConfig& sen
                             .count_objects = out.objects_counted};
   const auto look_at = [&](std::uint32_t frame, const ForecastScene& with) {
     const FrameTimes exposure = frame_times(sensor, frame);
-    const World world = worlds.around(exposure, seen, source);
-    return frame_forecast(View(sensor, exposure, world, scenario.seed), with);
+    const StateWindow window = windows.around(exposure, seen, source);
+    return frame_forecast(View(sensor, exposure, window, scenario.seed), with);
   };
   for (const std::uint32_t frame : evenly(frames, looks))
     out.frames.push_back(look_at(frame, scene));

@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
+#include "core/astrometry/calibrated_detection.h"
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/stopwatch.h"
-#include "core/calibration/calibrated_detection.h"
 #include "core/config/sensors/effect_list.h"
 #include "core/detection/detect.h"
 #include "core/detector/exposure/expose.h"
@@ -133,10 +133,10 @@ struct FramePipeline::Work {
       if (const auto& file = stars->field().map()->file) file->release();
   }
 
-  FrameProducts make(const FrameTimes& times, const World& world);
+  FrameProducts make(const FrameTimes& times, const StateWindow& window);
   std::optional<DetectionResult> search(const Frame& exposed, const FrameHeader& header);
   RadianceMap radiance_in(const PipelineSettings::Part& part, const FrameTimes& times,
-                          const World& world);
+                          const StateWindow& window);
   std::uint32_t first_frame_for(std::uint32_t frame) const;
 };
 
@@ -148,10 +148,10 @@ std::uint32_t FramePipeline::Work::first_frame_for(std::uint32_t frame) const {
 }
 
 RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
-                                             const FrameTimes& times, const World& world) {
+                                             const FrameTimes& times, const StateWindow& window) {
   SensorConfig sensor = planned;
   sensor.camera.band = part.band;
-  const View view(sensor, times, world, settings.seed);
+  const View view(sensor, times, window, settings.seed);
   OpticsStage part_optics(sensor, settings.seed, threads);
   if (evaluator) part_optics.draw_by(*evaluator);
   std::optional<StarLayer> part_stars;
@@ -184,12 +184,12 @@ std::uint32_t FramePipeline::max_frames_made_again() const {
   return 2 * std::min(persistence_window(detector.persistence_s, sensor.cadence_s), 1u << 30);
 }
 
-FrameProducts FramePipeline::run(const FrameTimes& times, const World& world,
+FrameProducts FramePipeline::run(const FrameTimes& times, const StateWindow& window,
                                  StatesInField* states) {
   const auto make = [&](const FrameTimes& exposure) {
-    if (!states) return work_->make(exposure, world);
+    if (!states) return work_->make(exposure, window);
     const PipelineSettings& settings = work_->settings;
-    return work_->make(exposure, states->around(world, settings.sensor, exposure, settings.seed));
+    return work_->make(exposure, states->around(window, settings.sensor, exposure, settings.seed));
   };
   FrameProducts frame;
   double total_s = 0.0;
@@ -221,11 +221,11 @@ std::optional<DetectionResult> FramePipeline::Work::search(const Frame& exposed,
   return described(std::move(*found), exposed.counts, exposed.header, threads);
 }
 
-FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& world) {
+FrameProducts FramePipeline::Work::make(const FrameTimes& times, const StateWindow& window) {
   FrameProducts frame;
   std::optional<std::vector<std::size_t>> objects;
   if (planner) {
-    const View view(settings.sensor, times, world, settings.seed);
+    const View view(settings.sensor, times, window, settings.seed);
     objects.emplace();
     if (settings.sensor.effects.has(SpaceObjects::facts))
       objects = objects_in_field(view, settings.shapes.get());
@@ -233,9 +233,9 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     set_effects(frame.plan.effects);
   }
   const SensorConfig& sensor = planned;
-  const View view(sensor, times, world, settings.seed);
+  const View view(sensor, times, window, settings.seed);
   std::optional<View> believed;  // where that is not the truth
-  if (view.errors().any()) believed.emplace(sensor, times, world, settings.seed, Belief::believed);
+  if (view.errors().any()) believed.emplace(sensor, times, window, settings.seed, Belief::believed);
   LightSources light_sources = sources(stars ? &*stars : nullptr, settings.shapes.get());
   if (objects) light_sources.objects = &*objects;
   frame.counts = std::exchange(used_counts, {});
@@ -247,7 +247,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   if (has(StarBackground::facts)) release_stars();
   if (settings.output.radiance_exr)
     for (const auto& part : settings.radiance_parts)
-      frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
+      frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, window)});
   frame.header = header_of(believed ? *believed : view, settings, optics->fwhm_px());
   frame.header.excluded = view.excluded();
   // A replayed plan may leave out what has no bound in this scenario.

@@ -20,7 +20,7 @@
 #include "sensors/objects/object_shapes.h"
 #include "sensors/objects/states_in_field.h"
 #include "sensors/scene/frame_times.h"
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 
 namespace dmise {
 
@@ -69,10 +69,10 @@ class FrameMaker {
  public:
   virtual ~FrameMaker() = default;
 
-  /// Makes one frame of an exposure as it is commanded (`frame_times`). `world` holds the states
+  /// Makes one frame of an exposure as it is commanded (`frame_times`). `window` holds the states
   /// from the exposure of `first_frame_for` it on. With `states` it holds ticks without states,
   /// which `states` propagates.
-  virtual FrameProducts run(const FrameTimes& exposure, const World& world,
+  virtual FrameProducts run(const FrameTimes& exposure, const StateWindow& window,
                             StatesInField* states) = 0;
   /// Takes back the counts of a finished frame, so that the next frame reuses their memory.
   virtual void give_back(CountImage&&) {}
@@ -95,7 +95,7 @@ class FramePipeline : public FrameMaker {
 
   /// With persistence a frame depends on the ones before it, which are made first where they were
   /// not.
-  FrameProducts run(const FrameTimes& exposure, const World& world,
+  FrameProducts run(const FrameTimes& exposure, const StateWindow& window,
                     StatesInField* states = nullptr) override;
   void give_back(CountImage&& counts) override;
   std::uint32_t first_frame_for(std::uint32_t frame) const override;

@@ -44,7 +44,7 @@ Observation observation_of(const View& view, const PipelineSettings& settings,
   const SimTime middle = view.times().middle;
   Observation o{.telescope = header_text(sensor.camera.name)};
   if (const auto target = view.target())
-    o.object = header_text(view.world().roster().objects[*target].name);
+    o.object = header_text(view.states().roster().objects[*target].name);
   const Utc start = settings.clock.utc(view.times().start);
   o.start_mjd = (start.jd1 - mjd_zero_jd) + start.jd2;
   if (centre) {

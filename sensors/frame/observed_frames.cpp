@@ -12,8 +12,8 @@ namespace dmise {
 namespace {
 
 /// States of all objects at `t`; those without one have the code of none.
-ObjectStates states_at(const World& world, SimTime t) {
-  const std::size_t n = world.object_count();
+ObjectStates states_at(const StateWindow& window, SimTime t) {
+  const std::size_t n = window.object_count();
   ObjectStates states{.time = t,
                       .count = n,
                       .position_m = std::vector<double>(3 * n),
@@ -24,11 +24,11 @@ ObjectStates states_at(const World& world, SimTime t) {
     rows[i] = v.x, rows[n + i] = v.y, rows[2 * n + i] = v.z;
   };
   for (std::size_t i = 0; i < n; ++i) {
-    if (!world.has_state(i, t)) {
+    if (!window.has_state(i, t)) {
       states.code[i] = std::uint8_t(MotionCode::untold);
       continue;
     }
-    const Motion motion = world.motion(i, t);
+    const Motion motion = window.motion(i, t);
     put(states.position_m, i, motion.position_m);
     put(states.slope_m_per_s, i, motion.slope_m_per_s);
     put(states.velocity_m_per_s, i, motion.slope_m_per_s);
@@ -37,9 +37,9 @@ ObjectStates states_at(const World& world, SimTime t) {
 }
 
 ObserverState observer_at(const SensorConfig& sensor, std::optional<std::size_t> platform,
-                          const World& world, const EarthOrientation& earth, SimTime t) {
+                          const StateWindow& window, const EarthOrientation& earth, SimTime t) {
   if (platform) {
-    const Motion motion = world.motion(*platform, t);
+    const Motion motion = window.motion(*platform, t);
     return {motion.position_m, motion.slope_m_per_s};
   }
   return standing_at(itrs_from_geodetic(*site_of(sensor)), earth, t);
@@ -51,33 +51,34 @@ ObservedFrames::ObservedFrames(const PipelineSettings& settings)
     : sensor_(settings.sensor), observer_(settings.observer) {}
 
 std::optional<std::size_t> ObservedFrames::platform(const FrameTimes& exposure,
-                                                    const World& world) const {
+                                                    const StateWindow& window) const {
   const auto* platform = std::get_if<PlatformConfig>(&sensor_.place);
   if (!platform) return std::nullopt;
   const std::size_t object =
-      object_index(world.roster(), platform->object, sensor_.name + ": platform");
+      object_index(window.roster(), platform->object, sensor_.name + ": platform");
   for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
-    if (!world.has_state(object, t))
-      throw Error(sensor_.name + ": " + world.roster().objects[object].name +
+    if (!window.has_state(object, t))
+      throw Error(sensor_.name + ": " + window.roster().objects[object].name +
                   " has no state at frame " + std::to_string(exposure.frame) + ": " +
-                  world.why_no_state(object, t));
+                  window.why_no_state(object, t));
   return object;
 }
 
-ObserverExposure ObservedFrames::exposure_of(const FrameTimes& exposure, const World& world) const {
+ObserverExposure ObservedFrames::exposure_of(const FrameTimes& exposure,
+                                             const StateWindow& window) const {
   ObserverExposure told{.frame = exposure.frame,
                         .start = exposure.start,
                         .middle = exposure.middle,
                         .end = exposure.end,
-                        .environment = world.environment(exposure.middle)};
+                        .environment = window.environment(exposure.middle)};
   told.environment.earth_beside.reset();  // it belongs to another time
-  const ObserverState at = observer_at(sensor_, platform(exposure, world), world,
+  const ObserverState at = observer_at(sensor_, platform(exposure, window), window,
                                        told.environment.earth, exposure.middle);
   told.position_m = at.position_m;
   told.velocity_m_per_s = at.velocity_m_per_s;
   if (!sensor_.observing->truth) return told;
-  told.roster = &world.roster();
-  told.objects = states_at(world, exposure.middle);
+  told.roster = &window.roster();
+  told.objects = states_at(window, exposure.middle);
   return told;
 }
 
@@ -97,36 +98,37 @@ FrameReport ObservedFrames::report_of(const FrameTimes& exposure, const Observer
           .detections = std::uint32_t(observed.sightings.size())};
 }
 
-FrameProducts ObservedFrames::run(const FrameTimes& exposure, const World& world, StatesInField*) {
+FrameProducts ObservedFrames::run(const FrameTimes& exposure, const StateWindow& window,
+                                  StatesInField*) {
   double total_s = 0.0;
   FrameProducts frame;
   {
     Stopwatch timing(total_s);
-    frame = make(exposure, world);
+    frame = make(exposure, window);
   }
   frame.total_s = total_s;
   return frame;
 }
 
-FrameProducts ObservedFrames::make(const FrameTimes& exposure, const World& world) const {
+FrameProducts ObservedFrames::make(const FrameTimes& exposure, const StateWindow& window) const {
   if (!observer_) throw ConfigError(sensor_.observing->where + ": this command starts no programs");
-  const ObserverExposure told = exposure_of(exposure, world);
+  const ObserverExposure told = exposure_of(exposure, window);
   auto got = observer_(told);
   if (!got) return {.stopped = true};
   if (auto* before = std::get_if<ObservedBefore>(&*got))
     return {.report = std::move(before->report), .detections = std::move(before->detections)};
-  return products_of(exposure, world, told, std::get<Observed>(std::move(*got)));
+  return products_of(exposure, window, told, std::get<Observed>(std::move(*got)));
 }
 
-FrameProducts ObservedFrames::products_of(const FrameTimes& exposure, const World& world,
+FrameProducts ObservedFrames::products_of(const FrameTimes& exposure, const StateWindow& window,
                                           const ObserverExposure& told, Observed observed) const {
   FrameProducts frame;
   std::ranges::stable_sort(observed.sightings, std::ranges::greater(), &OwnSighting::snr);
   frame.report = report_of(exposure, told, observed);
-  const auto object = platform(exposure, world);
+  const auto object = platform(exposure, window);
   for (const OwnSighting& sighting : observed.sightings) {
     const ObserverState at =
-        observer_at(sensor_, object, world, told.environment.earth, sighting.time);
+        observer_at(sensor_, object, window, told.environment.earth, sighting.time);
     Detection& d = frame.detections.emplace_back(
         detection_of(sighting, frame.report, at.position_m, at.velocity_m_per_s));
     d.index = std::uint32_t(frame.detections.size() - 1);

@@ -12,15 +12,16 @@ class ObservedFrames : public FrameMaker {
  public:
   explicit ObservedFrames(const PipelineSettings& settings);
 
-  FrameProducts run(const FrameTimes& exposure, const World& world, StatesInField* states) override;
+  FrameProducts run(const FrameTimes& exposure, const StateWindow& window,
+                    StatesInField* states) override;
 
  private:
-  FrameProducts make(const FrameTimes& exposure, const World& world) const;
-  FrameProducts products_of(const FrameTimes& exposure, const World& world,
+  FrameProducts make(const FrameTimes& exposure, const StateWindow& window) const;
+  FrameProducts products_of(const FrameTimes& exposure, const StateWindow& window,
                             const ObserverExposure& told, Observed observed) const;
   /// Index of the object that carries it, which has a state throughout the exposure.
-  std::optional<std::size_t> platform(const FrameTimes& exposure, const World& world) const;
-  ObserverExposure exposure_of(const FrameTimes& exposure, const World& world) const;
+  std::optional<std::size_t> platform(const FrameTimes& exposure, const StateWindow& window) const;
+  ObserverExposure exposure_of(const FrameTimes& exposure, const StateWindow& window) const;
   FrameReport report_of(const FrameTimes& exposure, const ObserverExposure& told,
                         const Observed& observed) const;
 

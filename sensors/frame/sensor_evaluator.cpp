@@ -37,7 +37,7 @@ SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid
       last_frame_(frames_within(settings.sensor, grid.duration)),
       shapes_(settings.shapes),
       frames_(frame_maker(settings, std::move(stars), threads)),
-      world_(grid.interpolation, grid.last_tick()),
+      window_(grid.interpolation, grid.last_tick()),
       propagated_(settings.propagated),
       clock_(settings.clock) {}
 
@@ -93,18 +93,18 @@ void SensorEvaluator::take_in(std::span<const Message> inputs) {
       const auto objects =
           propagated_objects(message.state, *propagated_, clock_, sensor_.ellipsoid,
                              shapes_ ? shapes_->models() : ObjectModels());
-      world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
+      window_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
       states_.emplace(objects, grid_.tick_length);
     } else if (const auto* set = std::get_if<TaskSet>(message.state.get())) {
       take_tasks(*set);
     } else if (!states_ || !states_->tell(message)) {
-      world_.add(message.state);
+      window_.add(message.state);
     }
   }
 }
 
 void SensorEvaluator::add_tick(Tick tick) {
-  if (propagates()) world_.add_tick(tick, {tick * grid_.tick_length.ns});
+  if (propagates()) window_.add_tick(tick, {tick * grid_.tick_length.ns});
 }
 
 Tick SensorEvaluator::look_back() const {
@@ -143,8 +143,8 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
     if (ready_at(next_frame_) > tick) {
-      world_.forget_before(exposure_span(sensor_, frames_->first_frame_for(next_frame_)).start);
-      if (states_) states_->forget_before(world_.first_tick());
+      window_.forget_before(exposure_span(sensor_, frames_->first_frame_for(next_frame_)).start);
+      if (states_) states_->forget_before(window_.first_tick());
       break;
     }
     if (is_cued()) {
@@ -153,9 +153,9 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
         ++next_frame_;
         continue;
       }
-      world_.follow(*std::ranges::find(tasks_, task, &std::shared_ptr<const Task>::get));
+      window_.follow(*std::ranges::find(tasks_, task, &std::shared_ptr<const Task>::get));
     }
-    FrameProducts frame = frames_->run(exposure, world_, states_ ? &*states_ : nullptr);
+    FrameProducts frame = frames_->run(exposure, window_, states_ ? &*states_ : nullptr);
     if (frame.stopped) break;
     if (writer_) writer_->write(frame);
     made_(frame);

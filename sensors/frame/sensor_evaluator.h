@@ -76,7 +76,7 @@ class SensorEvaluator : public Evaluator {
   std::shared_ptr<const ObjectShapes> shapes_;
   std::unique_ptr<FrameMaker> frames_;
   std::optional<ProductWriter> writer_;
-  World world_;
+  StateWindow window_;
   std::shared_ptr<const std::vector<OwnObject>> propagated_;  // null: takes published states
   Clock clock_;
   std::optional<StatesInField> states_;             // once the roster is known

@@ -47,7 +47,7 @@ double mean_sunlit(const std::vector<ObjectSample>& samples) {
 }
 
 double range_m_of(const View& view, std::size_t object, const ExposureInstant& at) {
-  return norm(view.world().motion(object, at.time).position_m - at.observer.position_m);
+  return norm(view.states().motion(object, at.time).position_m - at.observer.position_m);
 }
 
 bool is_resolved_at(const View& view, const ObjectSampler& sampler, std::size_t object,
@@ -65,7 +65,7 @@ Deposited draw_resolved(const View& view, const ObjectSampler& sampler, std::siz
   try {
     return draw_shape(view, sampler.shapes(), snapshots, defocus_m, stage, mask, image);
   } catch (const Error& error) {
-    throw Error("object " + view.world().roster().objects[object].name + ": " + error.what());
+    throw Error("object " + view.states().roster().objects[object].name + ": " + error.what());
   }
 }
 
@@ -97,7 +97,7 @@ std::vector<Arc> spread(const View& view, const ObjectSampler& sampler, std::siz
   };
   const auto blue = path(&SpectrumEnds::blue), red = path(&SpectrumEnds::red);
   if (blue.size() != arcs.size()) return arcs;
-  const Motion motion = view.world().motion(object, middle.time);
+  const Motion motion = view.states().motion(object, middle.time);
   const auto place = middle.places.satellite(motion.position_m, motion.slope_m_per_s);
   std::vector<Arc> parts;
   for (std::size_t i = 0; i < arcs.size(); ++i)
@@ -167,8 +167,8 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     if (light.signal_e <= 0.0 && !enters) continue;
 
     const ExposureInstant& mid = instant(changing_arcs);
-    const auto& facts = view.world().roster().objects[object];
-    const Motion motion = view.world().motion(object, mid.time);
+    const auto& facts = view.states().roster().objects[object];
+    const Motion motion = view.states().motion(object, mid.time);
     if (!true_places) true_places.emplace(view.true_places(mid.time));
     const auto place = true_places->satellite(motion.position_m, motion.slope_m_per_s);
     const auto [ra, dec] = to_spherical(place.astrometric);
@@ -229,7 +229,7 @@ std::vector<Truth> paint_rolled(const View& view, const std::vector<std::size_t>
   for (const std::size_t object : nearest_first(view, objects, middle)) {
     const auto row_at = [&](SimTime t) -> std::optional<double> {
       const ExposureInstant at(view, t);
-      const Motion motion = view.world().motion(object, t);
+      const Motion motion = view.states().motion(object, t);
       const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
       const auto pixel = project(view.sensor().camera.optics, at.camera * place.direction);
       return pixel ? std::optional(pixel->y_px) : std::nullopt;

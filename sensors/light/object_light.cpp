@@ -21,7 +21,7 @@ std::vector<std::size_t> indices_of(const View& view, const LightSources& source
   const auto all = sources.objects ? *sources.objects : objects_in_field(view, sources.shapes);
   std::map<std::pair<std::uint32_t, std::string>, std::size_t> by_name;
   for (const std::size_t i : all) {
-    const auto& object = view.world().roster().objects[i];
+    const auto& object = view.states().roster().objects[i];
     by_name.emplace(std::pair(object.catalogue_number, object.name), i);
   }
   std::vector<std::size_t> indices;
@@ -42,7 +42,7 @@ void take_object_lights(const View& view, const FrameTimes& commanded, const Lig
         &SunDisc::facts, &MoonDisc::facts, &Planets::facts, &EarthDisc::facts, &LimbAir::facts,
         &LimbAirglow::facts})
     dark.effects.force(*other, false);
-  const View in_the_dark(dark, commanded, view.world(), view.seed());
+  const View in_the_dark(dark, commanded, view.states(), view.seed());
   const auto indices = indices_of(view, sources, truths);
   const auto& grid = dark.camera.optics;
   EffectTimes elsewhere;

@@ -66,7 +66,7 @@ ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_
 }
 
 Vec<CameraFrame> direction_at(const View& view, std::size_t object, const ExposureInstant& at) {
-  const Motion motion = view.world().motion(object, at.time);
+  const Motion motion = view.states().motion(object, at.time);
   return unit(at.camera * at.places.satellite(motion.position_m, motion.slope_m_per_s).direction);
 }
 
@@ -156,7 +156,7 @@ std::vector<Arc> shape_arcs(const View& view, const ObjectSampler& sampler, std:
 int poses_of(const View& view, const ObjectSampler& sampler, std::size_t object) {
   const auto& exposure = view.times();
   const auto line_m = [&](SimTime t) {
-    return view.world().motion(object, t).position_m - view.observer(t).position_m;
+    return view.states().motion(object, t).position_m - view.observer(t).position_m;
   };
   const Vec<Gcrs> start_m = line_m(exposure.start), end_m = line_m(exposure.end);
   const double nearest_m = std::min({norm(start_m), norm(end_m), norm(line_m(exposure.middle))});

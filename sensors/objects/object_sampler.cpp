@@ -36,7 +36,7 @@ double rate_rad_per_s(const Motion& motion, const ObserverState& observer) {
 }  // namespace
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
-  const Motion motion = view_.world().motion(object, at.time);
+  const Motion motion = view_.states().motion(object, at.time);
   const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
   ObjectSample s;
   s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
@@ -48,7 +48,7 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
   if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_secondary_)) return s;
   s.electrons_per_photon_m2 =
       throughput_.of_air({place.direction, sun_bv, SightLine::Source::object,
-                          view_.world().roster().objects[object].catalogue_number,
+                          view_.states().roster().objects[object].catalogue_number,
                           rate_rad_per_s(motion, at.observer), std::nullopt, place.range_m}) *
       throughput_.electrons_per_photon_m2() * (s.pixel ? view_.illumination(*s.pixel) : 1.0);
   const double photons =
@@ -88,13 +88,13 @@ double ObjectSampler::magnitude_of_all_light(std::size_t object, const Motion& m
 }
 
 DiffuseSphere ObjectSampler::sphere(std::size_t object, SimTime t) const {
-  DiffuseSphere sphere = view_.world().roster().objects[object].sphere;
-  if (const auto albedo = view_.world().albedo(object, t)) sphere.albedo = *albedo;
+  DiffuseSphere sphere = view_.states().roster().objects[object].sphere;
+  if (const auto albedo = view_.states().albedo(object, t)) sphere.albedo = *albedo;
   return sphere;
 }
 
 const ObjectShape* ObjectSampler::shape(std::size_t object) const {
-  return shapes_ ? shapes_->of(view_.world().roster().objects[object]) : nullptr;
+  return shapes_ ? shapes_->of(view_.states().roster().objects[object]) : nullptr;
 }
 
 double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,

@@ -79,13 +79,13 @@ std::string ObjectShapes::renderer_description() const {
 
 std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
                                     const Vec<Gcrs>& observer_m, int rings) {
-  const auto attitude = view.world().gcrs_from_body(object, t);
+  const auto attitude = view.states().gcrs_from_body(object, t);
   if (!attitude) return std::nullopt;
-  const Vec<Gcrs> position_m = view.world().motion(object, t).position_m;
+  const Vec<Gcrs> position_m = view.states().motion(object, t).position_m;
   const Vec<Gcrs> to_sun = view.environment().sun_m - position_m;
   const Vec<Gcrs> to_viewer = observer_m - position_m;
   const auto body_from_gcrs = attitude->inverse();
-  const ObjectInfo& info = view.world().roster().objects[object];
+  const ObjectInfo& info = view.states().roster().objects[object];
   ShapePose pose{.gcrs_from_body = *attitude,
                  .to_sun = unit(body_from_gcrs * to_sun),
                  .to_viewer = unit(body_from_gcrs * to_viewer),
@@ -182,15 +182,15 @@ double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {
 
 double turn_rad(const View& view, std::size_t object, double begin, double end) {
   const auto& exposure = view.times();
-  const World& world = view.world();
-  const double turn = world.turn_rad(object, exposure.at(begin), exposure.at(end));
-  const auto& panel = world.roster().objects[object].panel;
+  const StateWindow& window = view.states();
+  const double turn = window.turn_rad(object, exposure.at(begin), exposure.at(end));
+  const auto& panel = window.roster().objects[object].panel;
   if (!panel || !(turn > 0.0)) return turn;
   const auto gcrs_from_panel = [&](double part) -> std::optional<Rotation<Gcrs, Panel>> {
     const SimTime t = exposure.at(part);
-    const auto gcrs_from_body = world.gcrs_from_body(object, t);
+    const auto gcrs_from_body = window.gcrs_from_body(object, t);
     if (!gcrs_from_body) return std::nullopt;
-    const Vec<Gcrs> to_sun = view.environment().sun_m - world.motion(object, t).position_m;
+    const Vec<Gcrs> to_sun = view.environment().sun_m - window.motion(object, t).position_m;
     return *gcrs_from_body * body_from_panel(*panel, gcrs_from_body->inverse() * to_sun);
   };
   // Steps in which the body turns little; of a fast one the first, in proportion.

@@ -68,7 +68,7 @@ class FieldCone {
   /// Whether an object is where the sensor is: its own host, under whatever number.
   bool at_sensor(std::size_t object) {
     for (const SimTime t : {exposure_.start, exposure_.middle, exposure_.end})
-      if (norm(view_.world().motion(object, t).position_m - moment(t).observer.position_m) <
+      if (norm(view_.states().motion(object, t).position_m - moment(t).observer.position_m) <
           Sight::nearest_m)
         return true;
     return false;
@@ -80,7 +80,7 @@ class FieldCone {
   /// `radius_m`: of the sphere about the object that holds it.
   bool crossed_by(std::size_t object, double radius_m) {
     radius_m_ = radius_m;
-    const Motion motion = view_.world().motion(object, exposure_.middle);
+    const Motion motion = view_.states().motion(object, exposure_.middle);
     const ObserverState& observer = moment(exposure_.middle).observer;
     const double range_m = norm(motion.position_m - observer.position_m);
     const double speed =
@@ -123,7 +123,7 @@ class FieldCone {
   double outside_m(std::size_t object, SimTime t) {
     const Moment& now = moment(t);
     const Vec<CameraFrame> line =
-        now.camera * (view_.world().motion(object, t).position_m - now.observer.position_m);
+        now.camera * (view_.states().motion(object, t).position_m - now.observer.position_m);
     return outside_cone_m(line, Vec<CameraFrame>{0, 0, 1}, cos_, sin_) - radius_m_;
   }
 
@@ -247,17 +247,17 @@ std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRos
 
 std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* shapes) {
   const FrameTimes exposure = view.times_of_all_rows();
-  const auto& world = view.world();
+  const auto& window = view.states();
   FieldCone cone(view);
   std::vector<std::size_t> found;
-  const auto& known = world.restricted_to();
-  const std::size_t count = known ? known->size() : world.object_count();
+  const auto& known = window.restricted_to();
+  const std::size_t count = known ? known->size() : window.object_count();
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = known ? (*known)[k] : k;
-    if (view.platform() == i || !world.has_state(i, exposure.start) ||
-        !world.has_state(i, exposure.end) || !world.has_state(i, exposure.middle))
+    if (view.platform() == i || !window.has_state(i, exposure.start) ||
+        !window.has_state(i, exposure.end) || !window.has_state(i, exposure.middle))
       continue;
-    const ObjectShape* shape = shapes ? shapes->of(world.roster().objects[i]) : nullptr;
+    const ObjectShape* shape = shapes ? shapes->of(window.roster().objects[i]) : nullptr;
     if (cone.crossed_by(i, shape ? shape->radius_m : 0.0) && !cone.at_sensor(i)) found.push_back(i);
   }
   return found;

@@ -45,12 +45,12 @@ std::shared_ptr<const PropagatedObjects> propagated_objects(
 StatesInField::StatesInField(std::shared_ptr<const PropagatedObjects> objects, SimTime tick_length)
     : objects_(std::move(objects)), tick_length_(tick_length) {}
 
-const StateInstants& StatesInField::instants(const World& world, Tick tick) {
+const StateInstants& StatesInField::instants(const StateWindow& window, Tick tick) {
   const auto found = instants_.find(tick);
   if (found != instants_.end()) return found->second;
   const SimTime time{tick * tick_length_.ns};
   std::vector<EarthOrientation> published;
-  if (const EnvironmentState* state = world.environment_of(time)) {
+  if (const EnvironmentState* state = window.environment_of(time)) {
     published.push_back(state->earth);
     if (const auto& beside = state->earth_beside)
       published.insert(published.end(), beside->begin(), beside->end());
@@ -79,21 +79,21 @@ RoughPlaces& StatesInField::rough_places(SimTime t) {
   return *rough_;
 }
 
-World StatesInField::around(const World& world, const SensorConfig& sensor,
-                            const FrameTimes& commanded, std::uint64_t seed) {
-  World seen = world;
+StateWindow StatesInField::around(const StateWindow& window, const SensorConfig& sensor,
+                                  const FrameTimes& commanded, std::uint64_t seed) {
+  StateWindow seen = window;
   const ExposureSpan span = exposure_span(sensor, commanded);
-  const KnotTicks ticks = world.ticks_for(span.start, span.end);
+  const KnotTicks ticks = window.ticks_for(span.start, span.end);
   std::erase_if(instants_, [&](const auto& known) { return known.first < ticks.first; });
   const auto know = [&](std::vector<std::uint32_t> objects) {
     std::sort(objects.begin(), objects.end());
     objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
     std::vector<ObjectStates> states;
     for (Tick tick = ticks.first; tick <= ticks.last && !objects.empty(); ++tick)
-      states.push_back(objects_->source.of_some(objects, tick, instants(world, tick), &told_));
+      states.push_back(objects_->source.of_some(objects, tick, instants(window, tick), &told_));
     seen.set_states(std::move(objects), std::move(states));
   };
-  const auto needed = needed_objects(sensor, world.roster());
+  const auto needed = needed_objects(sensor, window.roster());
   std::vector<std::uint32_t> objects(needed.begin(), needed.end());
   know(objects);
   if (!sensor.effects.has(SpaceObjects::facts)) return seen;
@@ -102,7 +102,7 @@ World StatesInField::around(const World& world, const SensorConfig& sensor,
     const auto candidates = may_be_in_field(view, rough_places(view.times().middle));
     objects.insert(objects.end(), candidates.begin(), candidates.end());
   }
-  const auto count = std::uint32_t(world.object_count());
+  const auto count = std::uint32_t(window.object_count());
   for (auto own = std::uint32_t(objects_->from_catalogues); own < count; ++own)
     objects.push_back(own);
   know(std::move(objects));

@@ -36,13 +36,13 @@ class StatesInField {
   bool tell(const Message& message) { return told_.add(message); }
   void forget_before(Tick tick) { told_.forget_before(tick); }
 
-  /// Returns `world`, which has ticks without states, with those that the exposure needs: of
+  /// Returns `window`, which has ticks without states, with those that the exposure needs: of
   /// platform, target and all objects that may be in the field.
-  World around(const World& world, const SensorConfig& sensor, const FrameTimes& commanded,
-               std::uint64_t seed = 1);
+  StateWindow around(const StateWindow& window, const SensorConfig& sensor,
+                     const FrameTimes& commanded, std::uint64_t seed = 1);
 
  private:
-  const StateInstants& instants(const World& world, Tick tick);
+  const StateInstants& instants(const StateWindow& window, Tick tick);
   RoughPlaces& rough_places(SimTime t);
 
   std::shared_ptr<const PropagatedObjects> objects_;

@@ -40,7 +40,7 @@ CommandedFrames::CommandedFrames(const Scenario& scenario, const ScenarioInputs&
       clock_(make_clock(scenario)),
       stars_(scene.stars),
       population_(scene.population),
-      worlds_(scenario, sensor_named(scenario, sensor), clock_),
+      windows_(scenario, sensor_named(scenario, sensor), clock_),
       states_(scene.population, clock_, threads_),
       writer_(directory + "/" + sensor, scenario.output, clock_) {
   settings_of(0);
@@ -59,8 +59,8 @@ FrameProducts CommandedFrames::make(const CommandedExposure& exposure) {
   PipelineSettings settings = settings_of(exposure.filter);
   settings.sensor = commanded_sensor(settings.sensor, exposure);
   const FrameTimes times = exposure.times();
-  const World world = worlds_.around(times, population_, states_);
-  return FramePipeline(std::move(settings), stars_, threads_).run(times, world);
+  const StateWindow window = windows_.around(times, population_, states_);
+  return FramePipeline(std::move(settings), stars_, threads_).run(times, window);
 }
 
 }  // namespace dmise

@@ -6,7 +6,7 @@
 #include "sensors/frame/make_sensor.h"
 #include "sensors/frame/product_writer.h"
 #include "sensors/frames/load_scene.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/observatory/commanded_exposure.h"
 
 namespace dmise {
@@ -40,7 +40,7 @@ class CommandedFrames {
   Clock clock_;
   std::shared_ptr<const StarMap> stars_;
   const ObjectPopulation& population_;
-  WorldSource worlds_;
+  StateWindowSource windows_;
   StateSource states_;
   ProductWriter writer_;
 };

@@ -45,15 +45,15 @@ SatellitePath::SatellitePath(const Scenario& scenario, const SensorConfig& senso
       sensor_(sensor),
       population_(only(elements)),
       states_(population_, clock, threads_),
-      worlds_(scenario, sensor, clock) {}
+      windows_(scenario, sensor, clock) {}
 
 Vec<Enu> SatellitePath::seen(SimTime t) const {
   t = std::clamp(t, SimTime{0}, scenario_.duration);
   const FrameTimes instant{1, t, t, t};
-  const World world = worlds_.around(instant, population_, states_);
-  if (!world.has_state(0, t)) throw Error("the satellite: " + world.why_no_state(0, t));
-  const View view(sensor_, instant, world, scenario_.seed, Belief::believed);
-  const Motion motion = world.motion(0, t);
+  const StateWindow window = windows_.around(instant, population_, states_);
+  if (!window.has_state(0, t)) throw Error("the satellite: " + window.why_no_state(0, t));
+  const View view(sensor_, instant, window, scenario_.seed, Belief::believed);
+  const Motion motion = window.motion(0, t);
   return view.enu_from_gcrs(t) *
          view.places(t).satellite(motion.position_m, motion.slope_m_per_s).direction;
 }

@@ -3,7 +3,7 @@
 
 #include "core/propagation/object_population.h"
 #include "core/propagation/object_states.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 
 namespace dmise {
 
@@ -28,7 +28,7 @@ class SatellitePath {
   ObjectPopulation population_;  // one object
   mutable Threads threads_;
   StateSource states_;
-  WorldSource worlds_;
+  StateWindowSource windows_;
 };
 
 }  // namespace dmise

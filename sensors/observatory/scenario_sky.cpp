@@ -23,7 +23,7 @@ ScenarioSky::ScenarioSky(const Scenario& scenario, const SensorConfig& sensor, c
     : scenario_(scenario),
       sensor_(looking_up(sensor)),
       clock_(clock),
-      worlds_(scenario, sensor, clock),
+      windows_(scenario, sensor, clock),
       states_(nothing_, clock, threads_) {}
 
 template <class Ask>
@@ -31,8 +31,8 @@ auto ScenarioSky::ask(SimTime t, const Ask& ask) const {
   // Beyond the run the sky stands still: exposures end within it.
   t = std::clamp(t, SimTime{0}, scenario_.duration);
   const FrameTimes instant{1, t, t, t};
-  const World world = worlds_.around(instant, nothing_, states_);
-  return ask(View(sensor_, instant, world, scenario_.seed, Belief::believed), t);
+  const StateWindow window = windows_.around(instant, nothing_, states_);
+  return ask(View(sensor_, instant, window, scenario_.seed, Belief::believed), t);
 }
 
 Vec<Enu> ScenarioSky::seen(const Equatorial& icrs, SimTime t) const {

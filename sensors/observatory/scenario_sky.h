@@ -1,7 +1,7 @@
 #pragma once
 #include "core/propagation/object_population.h"
 #include "core/propagation/object_states.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/observatory/satellite_path.h"
 #include "sensors/observatory/site_conditions.h"
 #include "sensors/observatory/site_sky.h"
@@ -31,7 +31,7 @@ class ScenarioSky : public SiteSky {
   const Scenario& scenario_;
   SensorConfig sensor_;
   Clock clock_;
-  WorldSource worlds_;
+  StateWindowSource windows_;
   ObjectPopulation nothing_;  // objects do not matter
   mutable Threads threads_;
   StateSource states_;

@@ -209,7 +209,7 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
   const DefocusFacts defocus(sensor_, times.middle);
   f.near_shadow = f.near_shadow_of_air = times.seconds() > short_exposure_s;
   for (const std::size_t object : objects) {
-    const Motion motion = view.world().motion(object, times.middle);
+    const Motion motion = view.states().motion(object, times.middle);
     const Vec<Gcrs> line_m = motion.position_m - middle.observer.position_m;
     const double range_m = norm(line_m);
     if (range_m > 0.0)
@@ -229,7 +229,7 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
     };
     sees(motion.position_m);
     const auto pixel = [&](const End& at) {
-      const Vec<Gcrs> position_m = view.world().motion(object, at.time).position_m;
+      const Vec<Gcrs> position_m = view.states().motion(object, at.time).position_m;
       sees(position_m);
       return project(optics, at.camera * unit(position_m - at.here_m));
     };

@@ -6,7 +6,7 @@
 #include "core/time/iso8601.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 
 namespace dmise {
 namespace {

@@ -6,16 +6,58 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "sensors/render/box_filter.h"
 #include "sensors/render/gl/gl.h"
 #include "sensors/render/gl/gl_context.h"
 #include "sensors/render/gl/gl_program.h"
 #include "sensors/render/gl/gl_textures.h"
+#include "sensors/render/renderer.h"
 #include "sensors/render/shaders.h"
 #include "sensors/render/tile_mesh.h"
 
 namespace dmise {
 namespace {
+
+/// A rectangle of pixels of a tile.
+struct TileBox {
+  int left = 0, top = 0, columns = 0, rows = 0;
+};
+
+/// Adds the mean of each pixel's samples to the tile: of up to three bands from `first_band` on
+/// and, if `with_coverage`, of the fourth channel to the coverage. `samples`: box.rows x
+/// oversampling rows of box.columns x oversampling samples of four floats.
+void add_box_means(const float* samples, const TileBox& box, int oversampling,
+                   std::size_t first_band, bool with_coverage, Tile& tile) {
+  using Four = float __attribute__((vector_size(16)));
+  const std::size_t n = std::size_t(oversampling);
+  const std::size_t row_samples = std::size_t(box.columns) * n;
+  const std::size_t bands = std::size_t(tile.bands);
+  const std::size_t channels = std::min<std::size_t>(3, bands - first_band);
+  const float share = 1.0f / float(n * n);
+  std::vector<Four> sums(std::size_t(box.columns));
+  for (int y = 0; y < box.rows; ++y) {
+    std::fill(sums.begin(), sums.end(), Four{});
+    for (std::size_t sy = 0; sy < n; ++sy) {
+      const float* row = samples + 4 * row_samples * (std::size_t(y) * n + sy);
+      for (std::size_t x = 0; x < sums.size(); ++x) {
+        Four sum = sums[x];
+        for (std::size_t sx = 0; sx < n; ++sx) {
+          Four sample;
+          __builtin_memcpy(&sample, row + 4 * (x * n + sx), sizeof sample);
+          sum += sample;
+        }
+        sums[x] = sum;
+      }
+    }
+    const std::size_t first =
+        std::size_t(box.top + y) * std::size_t(tile.columns) + std::size_t(box.left);
+    for (std::size_t x = 0; x < sums.size(); ++x) {
+      const Four mean = sums[x] * share;
+      for (std::size_t k = 0; k < channels; ++k)
+        tile.radiance[(first + x) * bands + first_band + k] += mean[k];
+      if (with_coverage) tile.coverage[first + x] += mean[3];
+    }
+  }
+}
 
 /// Samples of one piece per axis: 4 MB of colour.
 constexpr int piece_samples = 512;

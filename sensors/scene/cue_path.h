@@ -1,6 +1,6 @@
 #pragma once
 #include "core/products/task.h"
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 
 namespace dmise {
 

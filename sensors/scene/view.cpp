@@ -16,17 +16,17 @@
 
 namespace dmise {
 
-View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World& world,
+View::View(const SensorConfig& sensor, const FrameTimes& commanded, const StateWindow& window,
            std::uint64_t seed, Belief belief)
     : sensor_(sensor),
       errors_(belief == Belief::truth ? ExposureErrors(sensor, commanded, seed)
                                       : ExposureErrors(commanded)),
       times_(errors_.exposed()),
       shutter_(acting_detector(sensor.camera.detector, sensor.effects)),
-      world_(world),
+      window_(window),
       seed_(seed),
-      environment_(world.environment(times_.middle)),
-      air_(world.site(sensor.name, times_.middle)),
+      environment_(window.environment(times_.middle)),
+      air_(window.site(sensor.name, times_.middle)),
       site_(site_of(sensor)) {
   if (site_) {
     site_m_ = itrs_from_geodetic(*site_);
@@ -37,21 +37,21 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
     const Vec<Gcrs> to_sun = environment_.sun_m - observer(middle).position_m;
     daylight_ = elevation_over(up(middle), unit(to_sun)) > daylight_from_rad;
   } else {
-    platform_ = object_index(world.roster(), std::get<PlatformConfig>(sensor.place).object,
+    platform_ = object_index(window.roster(), std::get<PlatformConfig>(sensor.place).object,
                              sensor.name + ": platform");
   }
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
-    target_ = object_index(world.roster(), target->object, sensor.name + ": pointing.target");
+    target_ = object_index(window.roster(), target->object, sensor.name + ": pointing.target");
   for (const auto& needed : {platform_, target_})
     for (const SimTime t :
          {commanded.start, commanded.end, times_.start, times_.end, times_of_all_rows().end})
-      if (needed && !world.has_state(*needed, t))
-        throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
+      if (needed && !window.has_state(*needed, t))
+        throw Error(sensor.name + ": " + window.roster().objects[*needed].name +
                     " has no state at frame " + std::to_string(commanded.frame) + ": " +
-                    world.why_no_state(*needed, t));
-  if (target_ && norm(world.motion(*target_, commanded.middle).position_m -
+                    window.why_no_state(*needed, t));
+  if (target_ && norm(window.motion(*target_, commanded.middle).position_m -
                       observer(commanded.middle).position_m) < Sight::nearest_m)
-    throw Error(sensor.name + ": pointing.target: " + world.roster().objects[*target_].name +
+    throw Error(sensor.name + ": pointing.target: " + window.roster().objects[*target_].name +
                 " is where the sensor is, at frame " + std::to_string(commanded.frame));
   aimed_ = pointing_scene(commanded.middle);
   vignettes_ = acts<Vignetting>(sensor.effects, scene());
@@ -102,7 +102,7 @@ double View::illumination(PixelPosition pixel) const {
 
 ObserverState View::observer(SimTime t) const {
   if (platform_) {
-    const Motion motion = world_.motion(*platform_, t);
+    const Motion motion = window_.motion(*platform_, t);
     return {motion.position_m, motion.slope_m_per_s};
   }
   return standing_at(site_m_, earth(), t);
@@ -113,15 +113,15 @@ PointingScene View::pointing_scene(SimTime t) const {
                       .observer = observer(t),
                       .itrs_from_gcrs = earth().itrs_from_gcrs(t),
                       .site = site_ ? &*site_ : nullptr};
-  const Task* task = std::holds_alternative<PointCued>(sensor_.pointing) ? world_.task() : nullptr;
+  const Task* task = std::holds_alternative<PointCued>(sensor_.pointing) ? window_.task() : nullptr;
   if ((target_ || task) &&
       (sensor_.tracking == Tracking::target || t == errors_.commanded().middle)) {
-    const Motion target = task ? predicted_motion(*task, t) : world_.motion(*target_, t);
+    const Motion target = task ? predicted_motion(*task, t) : window_.motion(*target_, t);
     scene.towards_target =
         target_direction(sensor_, scene, refraction_, target.position_m, target.slope_m_per_s);
   }
   if (platform_ && std::holds_alternative<PointBody>(sensor_.pointing))
-    scene.gcrs_from_body = world_.gcrs_from_body(*platform_, t);
+    scene.gcrs_from_body = window_.gcrs_from_body(*platform_, t);
   return scene;
 }
 

@@ -11,7 +11,7 @@
 #include "core/visibility/pointing.h"
 #include "sensors/scene/bodies_in_field.h"
 #include "sensors/scene/exposure_errors.h"
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 
 namespace dmise {
 
@@ -25,9 +25,9 @@ enum class Belief {
 /// a direction falls on, at any time of the exposure.
 class View {
  public:
-  /// `commanded`: by the sensor's clock. `world` must cover its `exposure_span` and outlive the
+  /// `commanded`: by the sensor's clock. `window` must cover its `exposure_span` and outlive the
   /// view.
-  View(const SensorConfig& sensor, const FrameTimes& commanded, const World& world,
+  View(const SensorConfig& sensor, const FrameTimes& commanded, const StateWindow& window,
        std::uint64_t seed = 1, Belief belief = Belief::truth);
   View(const View&) = default;
   View& operator=(const View&) = delete;
@@ -45,7 +45,7 @@ class View {
   SimTime row_delay(double y_px) const;
   /// What the sensor does not know of this; none in a view of what it believes.
   const ExposureErrors& errors() const { return errors_; }
-  const World& world() const { return world_; }
+  const StateWindow& states() const { return window_; }
   std::uint64_t seed() const { return seed_; }
   bool on_ground() const { return site_.has_value(); }
   const std::optional<Site>& site() const { return site_; }
@@ -114,7 +114,7 @@ class View {
   const ExposureErrors errors_;
   FrameTimes times_;
   RollingShutter shutter_;
-  const World& world_;
+  const StateWindow& window_;
   std::uint64_t seed_;
   EnvironmentState environment_;  // at mid exposure
   const SiteState* air_;          // at mid exposure

@@ -14,7 +14,7 @@
 #include "sensors/forecast/detection_limit.h"
 #include "sensors/objects/object_sampler.h"
 #include "sensors/objects/objects_in_field.h"
-#include "sensors/objects/world_source.h"
+#include "sensors/objects/state_window_source.h"
 #include "sensors/sky/field_stars.h"
 #include "sensors/sky/sky_light.h"
 #include "sensors/sky/thermal_optics.h"
@@ -77,13 +77,13 @@ std::optional<ExposureForecast> ExposureForecaster::of(
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   const ExposureSpan span = exposure_span(sensor_, commanded);
-  const World world = world_of_some(scene_.roster(), scene_.environment(span.start),
-                                    scene_.environment(commanded.middle)->earth, span,
-                                    std::move(all), scene_.source());
+  const StateWindow window = window_of_some(scene_.roster(), scene_.environment(span.start),
+                                            scene_.environment(commanded.middle)->earth, span,
+                                            std::move(all), scene_.source());
   for (const std::uint32_t i : needed_)
     for (const SimTime t : {span.start, commanded.start, commanded.end, span.end})
-      if (!world.has_state(i, t)) return std::nullopt;
-  const View view(sensor_, commanded, world, scene_.scenario().seed);
+      if (!window.has_state(i, t)) return std::nullopt;
+  const View view(sensor_, commanded, window, scene_.scenario().seed);
   if (view.shutter_closed()) {
     out.closed = true;
     return out;
@@ -127,10 +127,10 @@ std::optional<ExposureForecast> ExposureForecaster::of(
 
   std::vector<ObjectSample> samples;
   for (const std::uint32_t object : objects) {
-    if (view.platform() == object || !world.has_state(object, times.start) ||
-        !world.has_state(object, times.middle) || !world.has_state(object, times.end))
+    if (view.platform() == object || !window.has_state(object, times.start) ||
+        !window.has_state(object, times.middle) || !window.has_state(object, times.end))
       continue;
-    const Motion motion = world.motion(object, times.middle);
+    const Motion motion = window.motion(object, times.middle);
     const Vec<Gcrs> line = motion.position_m - middle.observer.position_m;
     if (!(dot(line, line) > 1.0) || dot(up, line) < mask_sine_ * norm(line)) continue;
     samples.assign({sampler.sample(object, start), sampler.sample(object, middle),

@@ -58,7 +58,7 @@ TEST(Host, OfASensorIsLeftOutOfWhatItSees) {
       "  exposure_s: 1, cadence_s: 5}]\n",
       "", host_and_neighbour);
   const View view(stage.scenario.sensors[0], frame_times(stage.scenario.sensors[0], 2),
-                  stage.world);
+                  stage.states);
   EXPECT_EQ(objects_in_field(view), (std::vector<std::size_t>{1}));
   const auto truths = stage.frame(2).truths;
   ASSERT_EQ(truths.size(), 1u);

@@ -6,7 +6,7 @@
 
 #include "core/base/units.h"
 #include "orbit-node/orbit_actor.h"
-#include "sensors/scene/world.h"
+#include "sensors/scene/state_window.h"
 #include "tests/orbit_node/scenario_directory.h"
 
 namespace dmise {
@@ -52,19 +52,19 @@ TEST_F(ObjectStatesTest, BetweenTicksEveryModelIsInterpolatedToAMillimetre) {
   Threads threads(1);
   const auto population = load_objects(scenario, clock);
   const StateSource source(population, clock, threads);
-  World world;
-  world.add(std::make_shared<const ObjectRoster>(population.roster));
+  StateWindow window;
+  window.add(std::make_shared<const ObjectRoster>(population.roster));
   for (Tick k = 0; k <= 6; ++k)
-    world.add(std::make_shared<const ObjectStates>(source.at(k, scenario.time_of(k))));
+    window.add(std::make_shared<const ObjectStates>(source.at(k, scenario.time_of(k))));
   double worst_m[5] = {}, worst_m_per_s[5] = {}, worst_rad[5] = {};
   for (std::int64_t ms = 500; ms < 60000; ms += 1700) {
     const SimTime t{ms * 1'000'000};
     const ObjectStates direct = source.at(0, t);
     for (std::size_t i = 0; i < direct.count; ++i) {
-      const Motion between = world.motion(i, t);
+      const Motion between = window.motion(i, t);
       worst_m[i] = std::max(worst_m[i], norm(between.position_m - direct.position(i)));
       worst_m_per_s[i] = std::max(worst_m_per_s[i], norm(between.slope_m_per_s - direct.slope(i)));
-      const auto attitude = world.gcrs_from_body(i, t);
+      const auto attitude = window.gcrs_from_body(i, t);
       ASSERT_TRUE(attitude && direct.attitude(i));
       const auto truth = rotation_of<Gcrs, Body>(direct.attitude(i)->gcrs_from_body);
       for (const Vec<Body>& axis : {Vec<Body>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})

@@ -22,7 +22,7 @@ inline ExpectedElectronImage light_of(const Stage& stage, Threads& threads) {
                           .shapes = std::make_shared<const ObjectShapes>(
                               stage.scenario.own_objects, config.camera.band, config.effects)},
                          nullptr, threads);
-  return pipeline.run(frame_times(config, 1), stage.world).planes.background;
+  return pipeline.run(frame_times(config, 1), stage.states).planes.background;
 }
 inline ExpectedElectronImage light_of(Stage& stage) { return light_of(stage, stage.threads); }
 
@@ -76,7 +76,7 @@ inline std::string in_space(const Vec<Gcrs>& at_m, const std::string& pointing,
 inline const EnvironmentState& bodies() {
   static const Stage stage(
       in_space({4.2e7, 1e6, 2e6}, "{ra_deg: 0, dec_deg: 0}", camera(8, 8, 0.1)));
-  static const EnvironmentState environment = stage.world.environment({0});
+  static const EnvironmentState environment = stage.states.environment({0});
   return environment;
 }
 

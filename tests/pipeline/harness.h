@@ -19,7 +19,7 @@
 
 namespace dmise::test {
 
-/// A scenario in a directory of its own, with the world that its actors publish.
+/// A scenario in a directory of its own, with the states that its actors publish.
 class Stage {
  public:
   explicit Stage(const std::string& yaml, const std::string& stars_csv = "",
@@ -38,13 +38,13 @@ class Stage {
     write("objects.tle", elements);
     if (!variables.empty()) write("gcvs.txt", variables);
     scenario = load_scenario((directory / "scenario.yaml").string());
-    world = World(scenario.interpolation, scenario.last_tick());
+    states = StateWindow(scenario.interpolation, scenario.last_tick());
     const Clock clock = make_clock(scenario);
     OrbitActor orbit(scenario, clock, threads);
     EnvironmentActor environment(scenario, clock);
     for (Tick tick = 0; tick <= scenario.last_tick(); ++tick) {
-      for (const auto& message : orbit.step(tick, {})) world.add(message.state);
-      for (const auto& message : environment.step(tick, {})) world.add(message.state);
+      for (const auto& message : orbit.step(tick, {})) states.add(message.state);
+      for (const auto& message : environment.step(tick, {})) states.add(message.state);
     }
     if (!scenario.star_catalogue_path.empty())
       stars = std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path));
@@ -64,13 +64,13 @@ class Stage {
                             .shapes = std::make_shared<const ObjectShapes>(
                                 scenario.own_objects, config.camera.band, config.effects)},
                            stars, threads);
-    return pipeline.run(frame_times(config, number), world);
+    return pipeline.run(frame_times(config, number), states);
   }
 
   std::filesystem::path directory;
   Threads threads;
   Scenario scenario;
-  World world;
+  StateWindow states;
   std::shared_ptr<const StarMap> stars;
 
  private:
@@ -92,9 +92,9 @@ inline void expect_same_by_threads(Stage& stage, std::initializer_list<int> numb
                             .digest = "test",
                             .faintest_star_mag = 15},
                            stage.stars, threads);
-    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
-    EXPECT_EQ(pipeline.run(frame_times(config, 1), stage.world).counts.pixels, first) << n;
-    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
+    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.states).counts.pixels, second) << n;
+    EXPECT_EQ(pipeline.run(frame_times(config, 1), stage.states).counts.pixels, first) << n;
+    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.states).counts.pixels, second) << n;
   }
 }
 

@@ -86,7 +86,8 @@ inline std::string text_of(const ShapeScene& scene) {
 /// One that is lit from behind the camera.
 inline Sight lit_sight() {
   const Stage any(text_of({.objects = "", .pointing = "zenith"}));
-  const Vec<Gcrs> line = unit(unit(any.world.environment({0}).sun_m) * -1.0 + Vec<Gcrs>{0.1, 0, 0});
+  const Vec<Gcrs> line =
+      unit(unit(any.states.environment({0}).sun_m) * -1.0 + Vec<Gcrs>{0.1, 0, 0});
   const Vec<Gcrs> right = unit(cross(line, Vec<Gcrs>{0, 0, 1}));
   return {line, right, cross(line, right)};
 }

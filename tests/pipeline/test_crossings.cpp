@@ -39,14 +39,14 @@ std::string in_orbit(double anomaly_deg, const std::string& target) {
 double mean_sunlit(const Stage& stage) {
   const auto& sensor = stage.scenario.sensors.at(0);
   const FrameTimes times = frame_times(sensor, 1);
-  const View view(sensor, times, stage.world);
+  const View view(sensor, times, stage.states);
   const EarthShadow shadow(view.environment().sun_m, oblate_earth(view.earth()));
-  const std::size_t target = object_index(stage.world.roster(), "target", "test");
+  const std::size_t target = object_index(stage.states.roster(), "target", "test");
   constexpr int steps = 4000;
   double sum = 0;
   for (int i = 0; i < steps; ++i)
     sum +=
-        shadow.sunlit_fraction(stage.world.motion(target, times.at((i + 0.5) / steps)).position_m);
+        shadow.sunlit_fraction(stage.states.motion(target, times.at((i + 0.5) / steps)).position_m);
   return sum / steps;
 }
 
@@ -104,7 +104,7 @@ Vec<Gcrs> behind_pixel(PixelPosition pixel) {
   const Stage any(on_ground({4.2e7, 0, 0}, point));
   const auto& sensor = any.scenario.sensors.at(0);
   const FrameTimes times = frame_times(sensor, 1);
-  const View view(sensor, times, any.world);
+  const View view(sensor, times, any.states);
   const auto direction = unproject(sensor.camera.optics, pixel);
   return view.observer(times.middle).position_m +
          view.camera_from_gcrs(times.middle).inverse() * *direction * 4e7;

@@ -36,7 +36,7 @@ std::shared_ptr<Task> task_along(const test::Stage& stage, std::uint32_t id, dou
   task->end = sim_seconds(end_s);
   task->path_step_s = 5;
   for (int k = 0; k < 5; ++k) {
-    const Motion at = stage.world.motion(0, sim_seconds(5.0 * k));
+    const Motion at = stage.states.motion(0, sim_seconds(5.0 * k));
     const Vec<Gcrs>&r = at.position_m, &v = at.slope_m_per_s;
     task->path_m.insert(task->path_m.end(), {r.x, r.y, r.z});
     task->path_m_per_s.insert(task->path_m_per_s.end(), {v.x, v.y, v.z});
@@ -46,7 +46,7 @@ std::shared_ptr<Task> task_along(const test::Stage& stage, std::uint32_t id, dou
 
 TEST(Cue, TheTargetOfATaskIsInTheMiddleOfTheFrame) {
   test::Stage stage(text);
-  stage.world.follow(task_along(stage, 1, 0, 20));
+  stage.states.follow(task_along(stage, 1, 0, 20));
   for (const std::uint32_t frame : {2u, 5u}) {
     const FrameProducts made = stage.frame(frame);
     ASSERT_EQ(made.truths.size(), 1u);
@@ -61,7 +61,7 @@ TEST(Cue, TheTargetOfATaskIsInTheMiddleOfTheFrame) {
 // Told to look while the Moon is up, which this camera does not do: the frame is dark.
 TEST(Cue, ATaskWhereTheShutterIsClosedLeavesADarkFrame) {
   test::Stage stage(text);
-  stage.world.follow(task_along(stage, 1, 0, 20));
+  stage.states.follow(task_along(stage, 1, 0, 20));
   stage.scenario.sensors[0].camera.exclusion = {.sun_deg = {},
                                                 .moon_deg = 180.0,
                                                 .earth_limb_deg = {},

@@ -43,7 +43,7 @@ TEST(MoonInField, StandsWhereAstropyHasIt) {
     Stage stage(scenario(row.time, 5, huntsville, camera(64, 64, 0.5),
                          radec(row.ra_deg, row.dec_deg), 0.01, 5, more()));
     const View view(stage.scenario.sensors[0], frame_times(stage.scenario.sensors[0], 1),
-                    stage.world);
+                    stage.states);
     const SeenBody moon = seen_moon(view, view.times().middle);
     const auto there = from_spherical<Gcrs>(row.ra_deg * deg, row.dec_deg * deg);
     EXPECT_LT(angle_rad(moon.above_air_m, there) / arcsec, 0.6) << row.time;
@@ -82,7 +82,7 @@ TEST(MoonInField, FullMoonHasItsRadius) {
 TEST(MoonInField, ACrescentIsOnTheLimbThatFacesTheSun) {
   Stage stage(of_moon(crescent));
   const View view(stage.scenario.sensors[0], frame_times(stage.scenario.sensors[0], 1),
-                  stage.world);
+                  stage.states);
   const SimTime t = view.times().middle;
   const Vec<Gcrs> moon_m = seen_moon(view, t).above_air_m;
   const Vec<CameraFrame> sun =
@@ -332,7 +332,7 @@ TEST(DiscsInField, AnObjectWithAShapeHidesWhatIsBehind) {
                           .shapes = std::make_shared<const ObjectShapes>(
                               stage.scenario.own_objects, config.camera.band, config.effects)},
                          nullptr, stage.threads);
-  const auto planes = pipeline.run(frame_times(config, 1), stage.world).planes;
+  const auto planes = pipeline.run(frame_times(config, 1), stage.states).planes;
   const double earth = planes.background.at(64, 64);
   EXPECT_GT(earth, 0.0);
   EXPECT_NEAR(planes.sources.at(64, 64) / earth, -1.0, 1e-3);  // it is before it

@@ -99,7 +99,7 @@ TEST(DispersedFrame, AnObjectIsSpreadAsAStarIs) {
   // Where the camera looks: an object stands there, 900 km away.
   test::Stage empty(scene(band_file("lines", blue_line), "", "", pointing));
   const View view(empty.scenario.sensors[0], frame_times(empty.scenario.sensors[0], 1),
-                  empty.world);
+                  empty.states);
   const Vec<Gcrs> at = view.observer(view.times().middle).position_m +
                        test::direction(view, 130 * deg, 20 * deg) * 900e3;
   char text[200];

@@ -29,7 +29,7 @@ TEST(EarthshineEffect, LightsSpheresMeshesAndShapesAlike) {
       "    attitude: nadir\n    geometry: {model: sphere, facets: 5000, "
       "material: white, materials: " DMISE_SOURCE_DIR "/tests/pipeline/plain.yaml, radius_m: ";
   const Stage any(scene("    radius_m: 1\n", false));
-  const Vec<Gcrs> at{7000e3, 0, 0}, sun_m = any.world.environment({0}).sun_m;
+  const Vec<Gcrs> at{7000e3, 0, 0}, sun_m = any.states.environment({0}).sun_m;
   const auto as_body = [](const Vec<Gcrs>& v) { return Vec<Body>{v.x, v.y, v.z}; };
   const Vec<Body> to_sun = as_body(unit(sun_m - at)), to_eye = as_body(unit(eye_m - at));
   double expected = 0;

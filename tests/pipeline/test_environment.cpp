@@ -45,7 +45,7 @@ TEST(Environment, GoesOnBetweenTwoStates) {
   const Clock clock = make_clock(stage.scenario);
   for (const double t_s : {0.0, 30.0, 1800.0, 3480.0, 3599.9, 3600.0, 7190.0}) {
     const SimTime t = sim_seconds(t_s);
-    const EnvironmentState state = stage.world.environment(t);
+    const EnvironmentState state = stage.states.environment(t);
     const SolarSystem exact = solar_system(clock.tt(t));
     EXPECT_LT(angle_rad(state.sun_m, exact.sun_m), 0.1 * arcsec) << t_s;
     EXPECT_LT(angle_rad(state.moon_m, exact.moon_m), 1.0 * arcsec) << t_s;
@@ -53,8 +53,8 @@ TEST(Environment, GoesOnBetweenTwoStates) {
     EXPECT_LT(norm(state.earth_velocity_m_per_s - exact.earth_velocity_m_per_s), 1e-2) << t_s;
     EXPECT_NEAR(days_between(Tt{state.tt_jd1, state.tt_jd2}, clock.tt(t)), 0.0, 1e-9) << t_s;
   }
-  const auto before = stage.world.environment(sim_seconds(3599.999));
-  const auto after = stage.world.environment(sim_seconds(3600));
+  const auto before = stage.states.environment(sim_seconds(3599.999));
+  const auto after = stage.states.environment(sim_seconds(3600));
   EXPECT_LT(angle_rad(before.moon_m, after.moon_m), 1.0 * arcsec);
 }
 
@@ -93,7 +93,7 @@ TEST(Environment, ByMinutesIsThatOfTheTick) {
 // The 5/7 model: r0 4.96 cm and an isoplanatic angle of 6.89 urad at 0.5 um. The frame says so too.
 TEST(Environment, TellsTheTurbulenceOfASite) {
   test::Stage stage(scenario("", ground + ", atmosphere: {turbulence: hv57}}\n"));
-  const SiteState* air = stage.world.site("a", {});
+  const SiteState* air = stage.states.site("a", {});
   ASSERT_TRUE(air);
   EXPECT_NEAR(air->r0_m, 0.0496, 0.005 * 0.0496);
   EXPECT_NEAR(air->isoplanatic_angle_rad, 6.89e-6, 0.005 * 6.89e-6);
@@ -137,7 +137,7 @@ TEST(Environment, RefractionIsThatOfTheSitesWeather) {
   const auto lift = [](const std::string& weather) {
     test::Stage stage(scenario("", ground + weather + "}\n"));
     const auto& config = stage.scenario.sensors[0];
-    const View view(config, frame_times(config, 1), stage.world);
+    const View view(config, frame_times(config, 1), stage.states);
     const SimTime t = view.times().middle;
     const Vec<Gcrs> low = view.enu_from_gcrs(t).inverse() * from_horizontal({1.0, 20 * deg});
     const auto [ra, dec] = to_spherical(low);

@@ -25,12 +25,12 @@ std::string with(const std::string& camera, const std::string& exclusion) {
 BodyAngles angles_of(const Stage& stage, const Exclusion& exclusion, std::uint32_t frame = 1) {
   SensorConfig sensor = stage.scenario.sensors[0];
   sensor.camera.exclusion = exclusion;
-  return body_angles(View(sensor, frame_times(sensor, frame), stage.world));
+  return body_angles(View(sensor, frame_times(sensor, frame), stage.states));
 }
 Excluded excluded(const Stage& stage, const Exclusion& exclusion) {
   SensorConfig sensor = stage.scenario.sensors[0];
   sensor.camera.exclusion = exclusion;
-  return View(sensor, frame_times(sensor, 1), stage.world).excluded();
+  return View(sensor, frame_times(sensor, 1), stage.states).excluded();
 }
 Exclusion sun(double deg) { return {.sun_deg = deg, .moon_deg = {}, .earth_limb_deg = {}}; }
 Exclusion moon(double deg) { return {.sun_deg = {}, .moon_deg = deg, .earth_limb_deg = {}}; }
@@ -142,7 +142,7 @@ TEST(Exclusion, IsByTheLeastAngleOfATurnPastTheSun) {
     EXPECT_TRUE(excluded(stage, sun(3.001)).sun);
     EXPECT_FALSE(excluded(stage, sun(2.999)).sun);
     const auto& sensor = stage.scenario.sensors[0];
-    const View view(sensor, frame_times(sensor, 1), stage.world);
+    const View view(sensor, frame_times(sensor, 1), stage.states);
     for (const SimTime t : {view.times().start, view.times().middle, view.times().end})
       EXPECT_GT(angle_rad(view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1},
                           truly_seen_sun(view, t).apparent),

@@ -27,7 +27,7 @@ struct Field {
     const SensorConfig& sensor = stage.scenario.sensors.at(0);
     const ExposurePlanner planner(sensor, stage.stars.get(), stage.scenario.faintest_star_mag,
                                   nullptr);
-    return planner.facts(View(sensor, frame_times(sensor, 1), stage.world), {});
+    return planner.facts(View(sensor, frame_times(sensor, 1), stage.states), {});
   }
 };
 

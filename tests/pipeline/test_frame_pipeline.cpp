@@ -95,7 +95,7 @@ TEST(FramePipeline, AFinderTakesThePlaceOfOurDetector) {
                             .digest = "test",
                             .finder = std::move(finder)},
                            stage.stars, stage.threads);
-    return pipeline.run(frame_times(config, 2), stage.world);
+    return pipeline.run(frame_times(config, 2), stage.states);
   };
   std::string told;
   const FrameProducts frame = made([&](const CountImage& counts, const FrameHeader& header) {
@@ -122,7 +122,7 @@ TEST(FramePipeline, BytesDoNotDependOnThreads) {
     FramePipeline pipeline(
         {.sensor = config, .clock = make_clock(stage.scenario), .digest = "test"}, stage.stars,
         threads);
-    const auto frame = pipeline.run(frame_times(config, 2), stage.world);
+    const auto frame = pipeline.run(frame_times(config, 2), stage.states);
     const std::string bytes = encode_frame(frame.counts, frame.header);
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first) << count << " threads";

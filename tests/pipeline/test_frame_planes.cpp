@@ -37,7 +37,7 @@ class Planes : public testing::Test {
       for (const EffectFacts& e :
            {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts, Quantisation::facts})
         sensor.effects.set(e, false);
-    return pipeline().run(frame_times(sensor, number), stage.world);
+    return pipeline().run(frame_times(sensor, number), stage.states);
   }
   std::vector<PipelineSettings::Part> radiance_parts;
   FramePipeline pipeline() {
@@ -140,11 +140,11 @@ TEST_F(Planes, ARejoiningSensorRebuildsItsPersistence) {
   FramePipeline whole = pipeline();
   for (std::uint32_t number = 1; number <= 6; ++number) {
     const auto times = frame_times(stage.scenario.sensors[0], number);
-    const auto f = whole.run(times, stage.world), g = pipeline().run(times, stage.world);
+    const auto f = whole.run(times, stage.states), g = pipeline().run(times, stage.states);
     ASSERT_EQ(f.counts.pixels, g.counts.pixels) << number;
     if (number == 6) {
       detector.persistence_fraction = 0;
-      EXPECT_NE(pipeline().run(times, stage.world).counts.pixels, f.counts.pixels);
+      EXPECT_NE(pipeline().run(times, stage.states).counts.pixels, f.counts.pixels);
     }
   }
 }

@@ -58,7 +58,7 @@ FrameProducts frame_of(Stage& stage, std::size_t sensor, int snapshots = 0, int 
                           .shapes = std::make_shared<const ObjectShapes>(stage.scenario.own_objects,
                                                                          config.camera.band)},
                          stage.stars, pool);
-  return pipeline.run(frame_times(config, 1), stage.world);
+  return pipeline.run(frame_times(config, 1), stage.states);
 }
 
 double sum(const ExpectedElectronImage& image) {

@@ -17,8 +17,8 @@ namespace {
 /// Angle by which an object turns in the exposure.
 double turn_deg(const Stage& stage, const std::string& name) {
   const View view(stage.scenario.sensors.at(0), frame_times(stage.scenario.sensors[0], 1),
-                  stage.world);
-  return turn_rad(view, object_index(stage.world.roster(), name, "test")) / deg;
+                  stage.states);
+  return turn_rad(view, object_index(stage.states.roster(), name, "test")) / deg;
 }
 
 /// Light of an object in the frame over the mean of its light at 20,000 instants of the first
@@ -27,9 +27,9 @@ double light_over_mean(Stage& stage, const std::string& name, double period_s) {
   const auto& sensor = stage.scenario.sensors.at(0);
   const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band, sensor.effects);
   const FrameTimes times = frame_times(sensor, 1);
-  const View view(sensor, times, stage.world);
-  const std::size_t object = object_index(stage.world.roster(), name, "test");
-  const ObjectShape& shape = *shapes.of(stage.world.roster().objects[object].catalogue_number);
+  const View view(sensor, times, stage.states);
+  const std::size_t object = object_index(stage.states.roster(), name, "test");
+  const ObjectShape& shape = *shapes.of(stage.states.roster().objects[object].catalogue_number);
   constexpr int steps = 20000;
   double mean = 0;
   for (int i = 0; i < steps; ++i) {
@@ -88,7 +88,7 @@ std::string mirror_scene(const Mirror& mirror, const std::string& attitude, doub
 /// The direction of a normal that sends sunlight to the camera.
 Vec<Gcrs> glint_normal() {
   const Stage any(text_of({.objects = "", .pointing = "zenith"}));
-  return unit(unit(any.world.environment({0}).sun_m) - lit_sight().line);
+  return unit(unit(any.states.environment({0}).sun_m) - lit_sight().line);
 }
 
 // Half a degree of a mirror's turn sends its light to the camera: at 60 rpm for 1.4 ms, in

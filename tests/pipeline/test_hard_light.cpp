@@ -60,7 +60,7 @@ double expected_e(const FrameProducts& frame, const std::string& name) {
 }
 
 /// Away from the Sun, so that what lies there is lit from the front.
-Vec<Gcrs> away_from_sun(const Stage& stage) { return -unit(stage.world.environment({0}).sun_m); }
+Vec<Gcrs> away_from_sun(const Stage& stage) { return -unit(stage.states.environment({0}).sun_m); }
 
 TEST(HardLight, TwoObjectsInOnePixelAddTheirLightAndKeepTheirLabels) {
   Stage any(scenario(object("x", eye_m * 1.01, "    radius_m: 0.01\n"), "zenith", wide));
@@ -87,9 +87,9 @@ TEST(HardLight, TwoObjectsInOnePixelAddTheirLightAndKeepTheirLabels) {
 // and one before the Sun shows its dark side.
 TEST(HardLight, AnObjectBeforeTheMoonKeepsItsLightAndBeforeTheSunIsDark) {
   Stage any(scenario(object("x", eye_m * 1.01, "    radius_m: 0.01\n"), "zenith", wide));
-  const auto& world = any.world.environment({0});
+  const auto& window = any.states.environment({0});
   for (const bool moon : {true, false}) {
-    const Vec<Gcrs> line = unit((moon ? world.moon_m : world.sun_m) - eye_m);
+    const Vec<Gcrs> line = unit((moon ? window.moon_m : window.sun_m) - eye_m);
     Stage stage(scenario(object("passer", eye_m + line * 2e4, "    radius_m: 0.05\n"),
                          "{target: passer}", wide));
     const auto frame = stage.frame();

@@ -24,7 +24,7 @@ TEST(LightOfARun, FlickersByYoungsLawAtSixtyDegreesFromTheZenith) {
                                    test::camera(8, 8, 0.5, "", ", aperture_m: 0.02"), "zenith", 0.1,
                                    5));
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const Throughput throughput(view);
   const auto* scintillation = throughput.find<Scintillation>();
   const Vec<Gcrs> at = test::direction(view, 2.0, 30 * deg);
@@ -42,7 +42,7 @@ TEST(LightOfARun, FlickersByYoungsLawAtSixtyDegreesFromTheZenith) {
     EXPECT_NEAR(mean, 1.0, 5 * sigma / std::sqrt(count));
     EXPECT_NEAR(std::sqrt(squares / count - mean * mean) / sigma, 1.0, 0.02);
   }
-  const View next(sensor, frame_times(sensor, 2), stage.world);
+  const View next(sensor, frame_times(sensor, 2), stage.states);
   const SightLine star{at, sun_bv, SightLine::Source::star, 1};
   EXPECT_GT(
       std::abs(Throughput(next).find<Scintillation>()->apply(star) - scintillation->apply(star)),
@@ -69,7 +69,7 @@ TEST(LightOfARun, ASatellitesExtinctionIsThatOfItsApparentAltitude) {
   };
   test::Stage empty(scene(object(4e7, 0, 0)));
   const auto& sensor = empty.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), empty.world);
+  const View view(sensor, frame_times(sensor, 1), empty.states);
   // Straight line to it: the mean refraction at an apparent 5 deg (The Explanatory Supplement to
   // the Astronomical Almanac, 3.283: 9.9 arcmin at 1010 hPa and 10 deg C), by the air here.
   const double lift_rad = 9.9 * arcmin * (977.7 / 1010) * (283.15 / 286.2);
@@ -105,7 +105,7 @@ std::string uniform_sky(const std::string& camera, const std::string& effects = 
 std::pair<double, double> fall_at_30_deg(const std::string& effects) {
   test::Stage stage(uniform_sky(foreshortened, effects));
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   ExpectedElectronImage image(441, 21);
   fill_sky(view, {9.0}, image, stage.threads);
   const int x = int(std::lround(220 + 350 * std::tan(30 * deg)));
@@ -200,7 +200,7 @@ TEST(LightOfARun, MoonlightIsThatOfTheMoonOfTheDay) {
     test::Stage stage(test::scenario(start, 20, mountain, in_v, "zenith", 1, 5,
                                      ", sky: dark, atmosphere: {extinction: 0.17}"));
     const auto& sensor = stage.scenario.sensors[0];
-    const View view(sensor, frame_times(sensor, 1), stage.world);
+    const View view(sensor, frame_times(sensor, 1), stage.states);
     const double s10 = sky_over(view, {9.0}).part_s10(SkyPart::scattered_moonlight, {0, 0, 1});
     EXPECT_NEAR(mag_per_arcsec2_of_s10(s10), v_mag, 0.02) << start;
   }
@@ -217,7 +217,7 @@ TEST(LightOfARun, TheRadianceOfAUniformSkyIsFlat) {
                           .digest = "test",
                           .output = stage.scenario.output},
                          nullptr, stage.threads);
-  const auto frame = pipeline.run(frame_times(sensor, 1), stage.world);
+  const auto frame = pipeline.run(frame_times(sensor, 1), stage.states);
   const auto& map = frame.planes.radiance;
   const double centre = map.at(220, 10);
   ASSERT_GT(centre, 0.0);

@@ -26,7 +26,7 @@ Vec<Gcrs> over_limb(const Vec<Gcrs>& from_m, const Vec<Gcrs>& side, double heigh
 
 View view_of(const Stage& stage) {
   const auto& sensor = stage.scenario.sensors[0];
-  return View(sensor, frame_times(sensor, 1), stage.world);
+  return View(sensor, frame_times(sensor, 1), stage.states);
 }
 
 struct Seen {

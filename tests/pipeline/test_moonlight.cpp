@@ -37,7 +37,7 @@ double signal_e(const std::string& yaml) { return truth_of(yaml).rendered_signal
 /// Sun and Moon at the start.
 const EnvironmentState& bodies() {
   static const EnvironmentState environment =
-      Stage(scene({4.2e7, 0, 0}, {4.3e7, 0, 0}, "", false)).world.environment({0});
+      Stage(scene({4.2e7, 0, 0}, {4.3e7, 0, 0}, "", false)).states.environment({0});
   return environment;
 }
 

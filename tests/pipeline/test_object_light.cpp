@@ -33,7 +33,7 @@ Lights lights_of(Stage& stage) {
     lights.images.push_back(light);
   };
   FramePipeline pipeline(settings, stage.stars, stage.threads);
-  lights.frame = pipeline.run(frame_times(sensor, 1), stage.world);
+  lights.frame = pipeline.run(frame_times(sensor, 1), stage.states);
   return lights;
 }
 

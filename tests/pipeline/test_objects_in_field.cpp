@@ -21,17 +21,17 @@ std::string from_orbit(const std::string& pointing, double exposure_s) {
 
 /// Objects whose direction falls on the frame at one second of the exposure at least.
 std::set<std::size_t> asked_for_every_second(const View& view) {
-  const auto& world = view.world();
+  const auto& window = view.states();
   const Optics& optics = view.sensor().camera.optics;
   std::set<std::size_t> found;
   for (SimTime t = view.times().start; t < view.times().end; t.ns += 1'000'000'000) {
     const auto camera = view.camera_from_gcrs(t);
     const Vec<Gcrs> from_m = view.observer(t).position_m;
-    for (std::size_t i = 0; i < world.object_count(); ++i) {
-      if (view.platform() == i || !world.has_state(i, view.times().start) ||
-          !world.has_state(i, view.times().middle) || !world.has_state(i, view.times().end))
+    for (std::size_t i = 0; i < window.object_count(); ++i) {
+      if (view.platform() == i || !window.has_state(i, view.times().start) ||
+          !window.has_state(i, view.times().middle) || !window.has_state(i, view.times().end))
         continue;
-      const Vec<CameraFrame> line = camera * (world.motion(i, t).position_m - from_m);
+      const Vec<CameraFrame> line = camera * (window.motion(i, t).position_m - from_m);
       if (!(line.z > 0.0)) continue;
       const double f = optics.focal_length_px();
       if (std::abs(line.x) * f <= 0.5 * optics.columns * line.z &&
@@ -48,7 +48,7 @@ TEST(ObjectsInField, AnHoursExposureOfATurningCameraMissesNoObject) {
   for (const char* pointing : {"tracking: fixed", "target: '29499', tracking: target"}) {
     test::Stage stage(from_orbit(pointing, 3600.0));
     const auto& sensor = stage.scenario.sensors[0];
-    const View view(sensor, frame_times(sensor, 1), stage.world);
+    const View view(sensor, frame_times(sensor, 1), stage.states);
     const auto every_second = asked_for_every_second(view);
     const auto found = objects_in_field(view);
     EXPECT_GE(every_second.size(), 5u) << pointing;
@@ -68,12 +68,12 @@ TEST(ObjectsInField, AMountThatFollowsALowSatelliteMissesNoFarObject) {
       "camera: wide-field-cmos, pointing: {target: '25544', tracking: target}, exposure_s: 62, "
       "cadence_s: 62}]\n");
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const auto every_second = asked_for_every_second(view);
   const auto found = objects_in_field(view);
   const auto far = std::count_if(every_second.begin(), every_second.end(), [&](std::size_t i) {
     const Vec<Gcrs> from_m = view.observer(view.times().middle).position_m;
-    return norm(stage.world.motion(i, view.times().middle).position_m - from_m) > 15e6;
+    return norm(stage.states.motion(i, view.times().middle).position_m - from_m) > 15e6;
   });
   EXPECT_GE(far, 1);
   for (const std::size_t i : every_second)

@@ -18,7 +18,7 @@ TEST(OwnEarth, ASiteIsOnItsEllipsoid) {
     test::Stage stage(
         test::scenario(noon, 20, site, test::camera(8, 8, 0.1), "zenith", 10, 20, "", ellipsoid));
     const View view(stage.scenario.sensors[0], frame_times(stage.scenario.sensors[0], 1),
-                    stage.world);
+                    stage.states);
     const SimTime t = view.times().middle;
     const auto frame = stage.frame();
     EXPECT_LT(norm(frame.header.sensor_position_m - view.observer(t).position_m), 1e-6);
@@ -50,7 +50,7 @@ TEST(OwnEarth, CastsTheShadow) {
   const double a_m = 6378137.0;
   const auto lit_at = [&](const std::string& ellipsoid, double below_m) {
     test::Stage without(test::scenario(noon, 20, site, test::camera(8, 8, 0.1), "zenith", 10, 20));
-    const Vec<Gcrs> sun = unit(without.world.environment(sim_seconds(5.0)).sun_m), pole{0, 0, 1};
+    const Vec<Gcrs> sun = unit(without.states.environment(sim_seconds(5.0)).sun_m), pole{0, 0, 1};
     const Vec<Gcrs> aside = unit(pole - sun * dot(pole, sun));
     const Vec<Gcrs> r = aside * (a_m - below_m) - sun * 7e5;
     test::Stage stage(test::scenario(
@@ -72,7 +72,7 @@ TEST(OwnEarth, HidesWhatIsBehindIt) {
         noon, 20, "platform: eye", test::camera(8, 8, 0.1), "{target: x}", 1, 20, "", ellipsoid,
         "objects:\n" + fixed_gcrs("x", {2e7, 0, 6.368e6}) + fixed_gcrs("eye", {-2e7, 0, 6.368e6})));
     const View view(stage.scenario.sensors[0], frame_times(stage.scenario.sensors[0], 1),
-                    stage.world);
+                    stage.states);
     return view.earth_occultation({})->hides_object({2e7, 0, 6.368e6}, {1, 0, 0});
   };
   EXPECT_FALSE(hidden(""));

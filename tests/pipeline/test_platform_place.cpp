@@ -36,7 +36,7 @@ TEST(PlatformPlace, IsThatOfTheOrbitInMidExposure) {
 TEST(PlatformPlace, AStarIsSeenByTheVelocityOfItsTime) {
   test::Stage stage(in_orbit("{ra_deg: 217.43, dec_deg: -62.68}", 600, ""), near_star);
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const StarPlace star{.ra_rad = 217.43 * deg, .dec_rad = -62.68 * deg};
   const Vec<Gcrs> middle{-0.3644735457, -0.2790296919, -0.8884263985};
   const Vec<Gcrs> end{-0.3644784508, -0.2790276639, -0.8884250231};
@@ -49,7 +49,7 @@ TEST(PlatformPlace, AStarIsSeenByTheVelocityOfItsTime) {
 TEST(PlatformPlace, ACameraFixedToItsBodyTurnsWithTheOrbit) {
   test::Stage stage(in_orbit("{body: {boresight: [0, 0, -1], up: [1, 0, 0]}}", 10, ""), near_star);
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const auto at = [&](double t_s) { return view.camera_from_gcrs(sim_seconds(t_s)); };
   const Rotation<CameraFrame, CameraFrame> turn = at(10) * at(0).inverse();
   const double cosine = (turn.m[0][0] + turn.m[1][1] + turn.m[2][2] - 1) / 2;

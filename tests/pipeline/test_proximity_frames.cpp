@@ -108,13 +108,13 @@ TEST(ProximityFrames, ACloseUpHasTheLightOfTheFacets) {
     const Truth& truth = truth_of(frame, "target");
     const SimTime middle = frame_times(stage.scenario.sensors[0], 2).middle;
     const auto index = [&](const std::string& name) {
-      return object_index(stage.world.roster(), name, "test");
+      return object_index(stage.states.roster(), name, "test");
     };
-    const auto body_from_gcrs = stage.world.gcrs_from_body(index("target"), middle)->inverse();
-    const Vec<Gcrs> target_m = stage.world.motion(index("target"), middle).position_m;
+    const auto body_from_gcrs = stage.states.gcrs_from_body(index("target"), middle)->inverse();
+    const Vec<Gcrs> target_m = stage.states.motion(index("target"), middle).position_m;
     const double ratio = near_over_far(
-        size_m, unit(body_from_gcrs * (stage.world.environment(middle).sun_m - target_m)),
-        body_from_gcrs * (stage.world.motion(index("eye"), middle).position_m - target_m));
+        size_m, unit(body_from_gcrs * (stage.states.environment(middle).sun_m - target_m)),
+        body_from_gcrs * (stage.states.motion(index("eye"), middle).position_m - target_m));
     const double parallel_e =
         frame.header.exposure_s * truth.sunlit *
         light_of_magnitude(truth.true_magnitude - frame.header.zero_point_mag);

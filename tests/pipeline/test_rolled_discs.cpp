@@ -91,7 +91,7 @@ TEST(RolledDisc, OfTheSunIsShearedByItsRateTimesTheRowTime) {
                         .turned_before_s = 0.1}
                     .yaml());
     const auto& sensor = stage.scenario.sensors[0];
-    const View view(sensor, frame_times(sensor, 1), stage.world);
+    const View view(sensor, frame_times(sensor, 1), stage.states);
     const auto image = light_of(stage);
     EXPECT_NEAR(std::abs(shear_of(image, half_rows)), std::abs(px_per_s) * row_us * 1e-6,
                 1e-4 + 2e-3 * std::abs(px_per_s) * row_us * 1e-6)
@@ -142,7 +142,7 @@ TEST(RolledDisc, ThatMovesAlongColumnsIsHigherByOneOverOneLessItsSpeed) {
                     .turned_before_s = 0.1};
     Stage stage(turning.yaml());
     const auto& sensor = stage.scenario.sensors[0];
-    const View view(sensor, frame_times(sensor, 1), stage.world);
+    const View view(sensor, frame_times(sensor, 1), stage.states);
     const SimTime t = view.times().middle, later = t + sim_seconds(0.1);
     const double speed_px_per_s = (pixel_of(view, seen_sun(view, later).apparent, later)->y_px -
                                    pixel_of(view, seen_sun(view, t).apparent, t)->y_px) /
@@ -166,7 +166,7 @@ TEST(RolledDisc, ComesIntoTheFieldWhileLaterRowsAreExposed) {
                       .turned_before_s = 0.2}
                   .yaml());
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const SimTime first = view.times().middle, last = first + sim_seconds(0.199);
   const auto from_middle_px = [&](SimTime t) {
     return std::abs(pixel_of(view, seen_sun(view, t).apparent, t)->x_px - 0.5 * (side - 1));

@@ -107,9 +107,9 @@ TEST(Shapes, AGlintShorterThanASnapshotIsNotLost) {
   const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
   for (const std::uint32_t number : {1u, 2u}) {
     const FrameTimes times = frame_times(sensor, number);
-    const View view(sensor, times, stage.world);
-    const std::size_t target = object_index(stage.world.roster(), "target", "test");
-    const ObjectShape& shape = *shapes.of(stage.world.roster().objects[target].catalogue_number);
+    const View view(sensor, times, stage.states);
+    const std::size_t target = object_index(stage.states.roster(), "target", "test");
+    const ObjectShape& shape = *shapes.of(stage.states.roster().objects[target].catalogue_number);
     constexpr int steps = 20000;
     double mean = 0, most = 0;
     for (int i = 0; i < steps; ++i) {
@@ -156,7 +156,7 @@ double wings_m2_per_sr(const ShapePose& pose, const Vec<Body>& to_source, double
 
 ShapePose pose_of_target(const Stage& stage, const View& view) {
   const SimTime t = view.times().middle;
-  return *shape_pose(view, object_index(stage.world.roster(), "target", "test"), t,
+  return *shape_pose(view, object_index(stage.states.roster(), "target", "test"), t,
                      view.observer(t).position_m);
 }
 
@@ -170,7 +170,7 @@ TEST(Shapes, WingsOfAPanelAreThoseOfAPlateThatFollowsTheSun) {
       const auto frame = stage.frame();
       const auto& truth = target_of(frame);
       const View view(stage.scenario.sensors.at(0), frame_times(stage.scenario.sensors.at(0), 1),
-                      stage.world);
+                      stage.states);
       const ShapePose pose = pose_of_target(stage, view);
       const double light =
           wings_m2_per_sr(pose, pose.to_sun, std::stod(scale)) /
@@ -189,7 +189,7 @@ TEST(Shapes, SecondaryLightFallsOnTurnedWings) {
   Stage stage(scenario(wings("1", "    panel: {}"), tele));
   const auto& sensor = stage.scenario.sensors.at(0);
   const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   ShapePose pose = pose_of_target(stage, view);
   const Vec<Body> source = unit(pose.to_sun + pose.to_viewer + Vec<Body>{0.2, 0.5, -0.3});
   pose.secondary = {{source, 0.25}};
@@ -223,8 +223,8 @@ TEST(Shapes, TurnByTheFasterOfBodyAndPanel) {
   const auto turn = [&](const std::string& attitude, const std::string& panel) {
     const Stage stage(scenario(wings("1", panel), tele, attitude));
     const View view(stage.scenario.sensors.at(0), frame_times(stage.scenario.sensors.at(0), 1),
-                    stage.world);
-    return turn_rad(view, object_index(stage.world.roster(), "target", "test"));
+                    stage.states);
+    return turn_rad(view, object_index(stage.states.roster(), "target", "test"));
   };
   const double body = 2 * pi * 6 / 60 * 0.5;  // 6 rpm, 0.5 s
   EXPECT_NEAR(turn("{spinning: {axis: [0, 1, 0], rate_rpm: 6}}", "    panel: {}"), body, 1e-4);

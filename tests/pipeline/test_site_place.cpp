@@ -26,7 +26,7 @@ TEST(SitePlace, IsByTheUt1AndPoleOfTheEarthOrientationFile) {
       "zenith", 10, 20, "", ", earth_orientation: " + path.string()));
   const Vec<Gcrs> place_m{306478.024, -5509942.319, -3191264.754};
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   EXPECT_LT(norm(view.observer(view.times().middle).position_m - place_m), 0.02);
   const auto frame = stage.frame();
   EXPECT_LT(norm(frame.header.sensor_position_m - place_m), 0.02);
@@ -51,7 +51,7 @@ TEST(SitePlace, AtTwoThousandMetresHasTheAirOfThatHeight) {
       test::scenario("2018-03-06T12:00:00Z", 20,
                      "site: {latitude_deg: -30.2, longitude_deg: -70.7, height_m: 2000}",
                      test::camera(8, 8, 0.1), "zenith", 1, 5));
-  const SiteState* air = stage.world.site("a", {});
+  const SiteState* air = stage.states.site("a", {});
   ASSERT_TRUE(air);
   EXPECT_NEAR(air->pressure_hpa, 794.95, 0.1);
   EXPECT_NEAR(air->temperature_c, 2.0, 0.01);
@@ -63,7 +63,7 @@ double lift_arcsec(double centre_um, double elevation_rad) {
       "2018-03-06T12:00:00Z", 20, "site: atlanta", test::camera(8, 8, 0.1, "", "", centre_um),
       "zenith", 1, 5, ", weather: {pressure_hpa: 1000, temperature_c: -5, humidity: 0.3}"));
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const SimTime t = view.times().middle;
   EffectSet vacuum = sensor.effects;
   vacuum.set(AtmosphericRefraction::facts, false);
@@ -94,7 +94,7 @@ TEST(SitePlace, AStarIsSeenFromThere) {
                      "site: {latitude_deg: -30.2, longitude_deg: -70.7, height_m: 2000}",
                      test::camera(8, 8, 0.1), "zenith", 10, 20, ", effects: {refraction: off}"));
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const StarPlace star{.ra_rad = 217.43 * deg,
                        .dec_rad = -62.68 * deg,
                        .pm_ra_cosdec_rad_per_yr = -3.775 * arcsec,

@@ -39,7 +39,7 @@ std::string scenario(const std::string& start, int minutes, const std::string& c
 
 ExpectedElectronImage sky_of(test::Stage& stage, std::uint32_t frame, std::size_t sensor = 0) {
   const auto& config = stage.scenario.sensors.at(sensor);
-  const View view(config, frame_times(config, frame), stage.world);
+  const View view(config, frame_times(config, frame), stage.states);
   ExpectedElectronImage image(config.camera.optics.columns, config.camera.optics.rows);
   fill_sky(view, {drawn_to_v_mag}, image, stage.threads);
   return image;
@@ -125,7 +125,7 @@ TEST(SkyOverTime, ATransitOfTheZenithByTheCamerasAxis) {
     EXPECT_NEAR(at.x_px, first.x_px, 0.02) << frame;
     EXPECT_NEAR(at.y_px, first.y_px, 0.02) << frame;
     const auto& config = stage.scenario.sensors[0];
-    const View view(config, frame_times(config, frame), stage.world);
+    const View view(config, frame_times(config, frame), stage.states);
     const auto axis =
         view.camera_from_gcrs(view.times().middle).inverse() * Vec<CameraFrame>{0, 0, 1};
     min_zenith_deg = std::min(min_zenith_deg, angle_rad(axis, view.up(view.times().middle)) / deg);
@@ -167,7 +167,7 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
                  ", sky: {preset: urban, cities: [{azimuth_deg: 230}]}"),
         "ra_deg,dec_deg,mag_v\n0,90,6\n");
     const auto& config = stage.scenario.sensors[0];
-    const View view(config, frame_times(config, 1), stage.world);
+    const View view(config, frame_times(config, 1), stage.states);
     const SkyModel sky = sky_over(view, {drawn_to_v_mag});
     const ExpectedElectronImage image = sky_of(stage, 1);
     const SimTime t = view.times().middle;
@@ -207,7 +207,7 @@ GridErrors errors_of_grid(const std::string& start, const std::string& camera,
   test::Stage reference(stage_at("pixel"), stars);
   const ExpectedElectronImage exact = sky_of(reference, 1);
   const SensorConfig& config = reference.scenario.sensors[0];
-  const View view(config, frame_times(config, 1), reference.world);
+  const View view(config, frame_times(config, 1), reference.states);
   const PlanFacts facts =
       ExposurePlanner(config, reference.stars.get(), drawn_to_v_mag, nullptr).facts(view, {});
   GridErrors errors;
@@ -313,7 +313,7 @@ TEST(Air, ScintillationHasYoungsDeviationAndMeanOne) {
   for (std::uint32_t frame = 1; frame <= frames; ++frame) {
     FrameTimes times = frame_times(config, 1);
     times.frame = frame;
-    const View view(config, times, stage.world, 7);
+    const View view(config, times, stage.states, 7);
     const SightLine star{view.up(times.middle), sun_bv, SightLine::Source::star, 42};
     const double f = Throughput(view).find<Scintillation>()->apply(star);
     sum += f, squares += f * f;
@@ -331,7 +331,7 @@ TEST(Air, ExtinctionIsByBandColourAndAirmass) {
                              ", atmosphere: {extinction: kitt_peak}"),
                     "ra_deg,dec_deg,mag_v\n0,90,6\n");
   const auto& config = stage.scenario.sensors[0];
-  const View view(config, frame_times(config, 1), stage.world);
+  const View view(config, frame_times(config, 1), stage.states);
   const Throughput throughput(view);
   const auto of_air = [&](const Vec<Gcrs>& apparent, double bv) {
     return throughput.find<AirExtinction>()->apply({apparent, bv, SightLine::Source::star, 1});

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/astrometry/solve_frame.h"
 #include "core/base/units.h"
-#include "core/calibration/solve_frame.h"
 #include "core/image/fits_cards.h"
 #include "tests/pipeline/wiring.h"
 

@@ -35,7 +35,7 @@ double median_e(const std::string& yaml) {
 double sun_longitude_rad() {
   test::Stage stage(far_out("{ra_deg: 0, dec_deg: 90}", ""));
   const View view(stage.scenario.sensors[0], frame_times(stage.scenario.sensors[0], 1),
-                  stage.world);
+                  stage.states);
   const SimTime middle = view.times().middle;
   return to_spherical(ecliptic_from_gcrs() *
                       unit(view.environment().sun_m - view.observer(middle).position_m))[0];

@@ -75,7 +75,7 @@ Drawn draw(const View& view, const std::shared_ptr<const StarMap>& map, bool wit
 TEST(StarBatches, AreTheLightOfStarsOneByOne) {
   test::Stage stage(scenario);
   const SensorConfig& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const Catalogues catalogues(view.up(view.times().middle));
   ASSERT_TRUE(catalogues.of_bright->is_small() && !catalogues.large->is_small());
   const Drawn exact = draw(view, catalogues.of_bright, true),
@@ -120,7 +120,7 @@ TEST(StarBatches, StarsBehindTheEarthsLimbAreDimmedOneByOneAndTogether) {
       "objects:\n  - name: platform\n    motion: {fixed: {gcrs_m: [7000000, 0, 0]}}\nsensors:");
   test::Stage stage(text);
   const SensorConfig& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   ASSERT_TRUE(view.scene().limb_in_field);
   const Catalogues catalogues(view.camera_from_gcrs(view.times().middle).inverse() *
                               Vec<CameraFrame>{0, 0, 1});
@@ -144,7 +144,7 @@ TEST(StarBatches, StarsBehindTheEarthsLimbAreDimmedOneByOneAndTogether) {
 TEST(StarBatches, AreTheSameBytesWithoutTruthAndOnAnyNumberOfThreads) {
   test::Stage stage(scenario);
   const SensorConfig& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const Catalogues catalogues(view.up(view.times().middle));
   const Drawn reference = draw(view, catalogues.large, true);
   for (const int threads : {1, 3}) {

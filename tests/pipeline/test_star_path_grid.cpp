@@ -35,7 +35,7 @@ std::string camera(const char* projection, double focal_length_m) {
 double compare(const std::string& yaml) {
   test::Stage stage(yaml);
   const SensorConfig& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const std::array<SimTime, 3> times{view.times().start, view.times().middle, view.times().end};
   const auto exact = [&](const Vec<Gcrs>& astrometric) -> std::optional<StarPath> {
     StarPath path;

@@ -8,21 +8,21 @@
 namespace dmise {
 namespace {
 
-/// A world whose ticks have no states, of the same scene as a stage's.
-World without_states(const test::Stage& stage, const PropagatedObjects& objects) {
-  World world(stage.scenario.interpolation, stage.scenario.last_tick());
-  world.add(std::make_shared<const ObjectRoster>(objects.population.roster));
+/// A window whose ticks have no states, of the same scene as a stage's.
+StateWindow without_states(const test::Stage& stage, const PropagatedObjects& objects) {
+  StateWindow window(stage.scenario.interpolation, stage.scenario.last_tick());
+  window.add(std::make_shared<const ObjectRoster>(objects.population.roster));
   EnvironmentActor environment(stage.scenario, make_clock(stage.scenario));
   for (Tick tick = 0; tick <= stage.scenario.last_tick(); ++tick) {
-    world.add_tick(tick, stage.scenario.time_of(tick));
+    window.add_tick(tick, stage.scenario.time_of(tick));
     for (const auto& message : environment.step(tick, {})) {
       if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
-        world.add(std::make_shared<const EnvironmentState>(*state));
+        window.add(std::make_shared<const EnvironmentState>(*state));
       if (const auto* state = std::get_if<SiteState>(message.state.get()))
-        world.add(std::make_shared<const SiteState>(*state));
+        window.add(std::make_shared<const SiteState>(*state));
     }
   }
-  return world;
+  return window;
 }
 
 std::string scene(const std::string& simulation, const std::string& sensor, double exposure_s,
@@ -45,23 +45,23 @@ double expect_same_field(const std::string& yaml, std::size_t least_found) {
   const auto objects = std::make_shared<const PropagatedObjects>(published_roster(population),
                                                                  stage.scenario.own_objects, clock,
                                                                  stage.scenario.earth.ellipsoid);
-  const World empty = without_states(stage, *objects);
+  const StateWindow empty = without_states(stage, *objects);
   StatesInField states(objects, stage.scenario.tick);
   const auto& sensor = stage.scenario.sensors[0];
   std::size_t all = 0, known = 0;
   for (std::uint32_t frame = 1; frame <= frames_within(sensor, stage.scenario.duration); ++frame) {
     const FrameTimes times = frame_times(sensor, frame);
-    const World own = states.around(empty, sensor, times);
-    const View by_published(sensor, times, stage.world), by_own(sensor, times, own);
+    const StateWindow own = states.around(empty, sensor, times);
+    const View by_published(sensor, times, stage.states), by_own(sensor, times, own);
     const auto found = objects_in_field(by_published);
     EXPECT_EQ(objects_in_field(by_own), found) << frame;
     all += found.size();
     for (const std::size_t i : found)
       for (const double share : {0.0, 0.31, 0.5, 1.0}) {
         const SimTime t = times.at(share);
-        const Motion a = stage.world.motion(i, t), b = own.motion(i, t);
+        const Motion a = stage.states.motion(i, t), b = own.motion(i, t);
         EXPECT_TRUE(a.position_m == b.position_m && a.slope_m_per_s == b.slope_m_per_s) << i;
-        EXPECT_TRUE(stage.world.gcrs_from_body(i, t).has_value() ==
+        EXPECT_TRUE(stage.states.gcrs_from_body(i, t).has_value() ==
                     own.gcrs_from_body(i, t).has_value());
       }
     EXPECT_TRUE(own.restricted_to());

@@ -38,7 +38,7 @@ struct Light {
 Light light_of(const std::string& yaml) {
   test::Stage stage(yaml, one_star);
   const SensorConfig& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const StarLayer layer(sensor, stage.stars, stage.scenario.faintest_star_mag);
   OpticsStage optics(sensor, 1, stage.threads);
   ExpectedElectronImage image(512, 512);

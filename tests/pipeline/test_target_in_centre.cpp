@@ -102,9 +102,9 @@ std::string sensor(const std::string& place, const std::string& camera, const st
 /// How far from the frame's centre the camera of a stage has an object in mid exposure [px].
 double off_centre_px(const test::Stage& stage, const SensorConfig& sensor,
                      const std::string& object) {
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   const SimTime t = view.times().middle;
-  const Motion motion = stage.world.motion(object_index(stage.world.roster(), object, "test"), t);
+  const Motion motion = stage.states.motion(object_index(stage.states.roster(), object, "test"), t);
   const auto place = view.places(t).satellite(motion.position_m, motion.slope_m_per_s);
   const auto pixel = test::pixel_of(view, place.direction, t);
   const Optics& optics = sensor.camera.optics;
@@ -266,10 +266,10 @@ TEST(TargetInCentre, FromTheFirstToTheLastInstantWhileItTracks) {
   crop(eye.camera.optics);
   for (const std::string& target : targets) {
     eye.pointing = PointTarget{target};
-    const View view(eye, frame_times(eye, 1), stage.world);
+    const View view(eye, frame_times(eye, 1), stage.states);
     for (const SimTime t : {view.times().start, view.times().middle, view.times().end}) {
       const Motion motion =
-          stage.world.motion(object_index(stage.world.roster(), target, "test"), t);
+          stage.states.motion(object_index(stage.states.roster(), target, "test"), t);
       const auto place = view.places(t).satellite(motion.position_m, motion.slope_m_per_s);
       const auto pixel = test::pixel_of(view, place.direction, t);
       ASSERT_TRUE(pixel);
@@ -335,7 +335,7 @@ TEST(TargetInCentre, ASensorCannotPointAtWhatCarriesIt) {
       scenario(space_objects, sensor("platform: platform", "raven", "{target: geo}")));
   stage.scenario.sensors[0].pointing = PointTarget{"platform"};
   try {
-    check_sensors(stage.scenario, stage.world.roster());
+    check_sensors(stage.scenario, stage.states.roster());
     FAIL();
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find(

@@ -71,7 +71,7 @@ TEST(Truth, HasItsLabelWhereTheCameraHasItsPlace) {
   const auto frame = stage.frame();
   const auto& truth = frame.truths.at(0);
   const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const View view(sensor, frame_times(sensor, 1), stage.states);
   // Skyfield's apparent place, in the fisheye: 0.001 px are 1.1 arcsec.
   const auto at =
       test::pixel_of(view, from_spherical<Gcrs>(15.697105 * deg, 35.774321 * deg), truth.middle);
@@ -79,7 +79,7 @@ TEST(Truth, HasItsLabelWhereTheCameraHasItsPlace) {
   EXPECT_NEAR(truth.middle_x_px, at->x_px, 0.001);
   EXPECT_NEAR(truth.middle_y_px, at->y_px, 0.001);
   const auto direction_at = [&](SimTime t) {
-    const auto motion = stage.world.motion(0, t);
+    const auto motion = stage.states.motion(0, t);
     return view.places(t).satellite(motion.position_m, motion.slope_m_per_s).direction;
   };
   const auto end = test::pixel_of(view, direction_at(truth.end), truth.end);

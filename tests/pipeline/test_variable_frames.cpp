@@ -115,7 +115,7 @@ TEST(VariableFrames, ArePlannedByTheBrightestOfTheirStars) {
     const SensorConfig& sensor = stage.scenario.sensors.at(0);
     const ExposurePlanner planner(sensor, stage.stars.get(), stage.scenario.faintest_star_mag,
                                   nullptr);
-    return planner.facts(View(sensor, frame_times(sensor, 1), stage.world), {});
+    return planner.facts(View(sensor, frame_times(sensor, 1), stage.states), {});
   };
   const PlanFacts constant = facts(""), variable = facts(", variables: gcvs.txt");
   EXPECT_NEAR(variable.brightest_star_e / constant.brightest_star_e, std::pow(10.0, 0.4 * 4.0),

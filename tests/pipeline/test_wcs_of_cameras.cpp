@@ -71,7 +71,7 @@ Asked ask(const CameraCase& c) {
   test::Stage stage(scenario(c), "", elements);
   const auto& config = stage.scenario.sensors.at(0);
   const PipelineSettings settings{.sensor = config, .clock = make_clock(stage.scenario)};
-  const View view(config, frame_times(config, 1), stage.world);
+  const View view(config, frame_times(config, 1), stage.states);
   const SimTime middle = view.times().middle;
   Asked asked{.header = as_in_file(header_of(view, settings, 1.5)), .lines = {}};
   const auto places = view.places(middle);

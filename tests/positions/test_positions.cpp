@@ -114,7 +114,7 @@ TEST(Positions, OfAPlatformAreAnEphemerisThatBringsItBack) {
   const Clock clock = make_clock(stage.scenario);
   for (const double t_s : {0.0, 2.5, 17.3, 38.9}) {
     const auto state = std::get<MotionState<Gcrs>>(path_at(path, clock.tai(sim_seconds(t_s))));
-    const Motion there = stage.world.motion(0, sim_seconds(t_s));
+    const Motion there = stage.states.motion(0, sim_seconds(t_s));
     EXPECT_LT(norm(state.position_m - there.position_m), 0.01) << t_s;
   }
 }
@@ -171,7 +171,7 @@ TEST(Positions, InEastNorthAndUpOfTheScenariosOrigin) {
   const Trajectory path = read_oem(out + "/positions/kite-990000001.oem");
   const Clock clock = make_clock(stage.scenario);
   const auto state = std::get<MotionState<Gcrs>>(path_at(path, clock.tai(sim_seconds(20.0))));
-  EXPECT_LT(norm(state.position_m - stage.world.motion(0, sim_seconds(20.0)).position_m), 0.01);
+  EXPECT_LT(norm(state.position_m - stage.states.motion(0, sim_seconds(20.0)).position_m), 0.01);
 }
 
 // At a tick that is the middle of an exposure, the attitude is that of the frame.

@@ -47,6 +47,8 @@ struct Chart {
 /// Returns ticks of a logarithmic axis over [least, most], `least` > 0: 1, 2 and 5 times a power of
 /// ten with labels such as "20,000", and short ones at the other multiples.
 std::vector<ChartTick> logarithmic_ticks(double least, double most);
+/// Returns the logarithmic axis over [least, most] with these ticks.
+ChartAxis logarithmic_axis(std::string label, double least, double most);
 
 /// Renders as SVG 1.1. Equal charts give equal text.
 std::string chart_svg(const Chart& chart);

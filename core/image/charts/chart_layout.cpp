@@ -169,4 +169,12 @@ std::vector<ChartTick> logarithmic_ticks(double least, double most) {
   return ticks;
 }
 
+ChartAxis logarithmic_axis(std::string label, double least, double most) {
+  return {.label = std::move(label),
+          .least = least,
+          .most = most,
+          .logarithmic = true,
+          .ticks = logarithmic_ticks(least, most)};
+}
+
 }  // namespace dmise
