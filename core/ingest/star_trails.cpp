@@ -23,7 +23,7 @@ namespace {
 constexpr double min_fwhm_px = 0.5, max_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
 // A shorter trail looks as coma and astigmatism do, which the PSF follows.
-constexpr double min_trail_sigmas = 3.5;
+constexpr double min_trail_sigmas = 4.0;
 constexpr double min_alike_sigmas = 4.5;  // of trails that are measured by lines of images
 constexpr double round_variances = 0.5;   // difference of variances of a round image, of the PSF's
 
