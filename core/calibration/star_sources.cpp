@@ -154,7 +154,7 @@ std::vector<PlateSource> sources_of_trails(const CountImage& counts,
 /// The line of a fitted image; empty if it is round.
 std::optional<StreakMotion> line_of_star(const TrailFit& fit) {
   constexpr int at_length = 3, at_angle = 4;
-  constexpr int parameters = 6;  // of a line and the background
+  constexpr int parameters = 6;  // a line has five, the background one
   if (!(fit.trails[0].length_px > 0) || fit.parameters < parameters) return std::nullopt;
   const double scale = std::max(1.0, fit.reduced_chi2());
   return streak_motion(fit.trails[0], scale * fit.cov(at_length, at_length),

@@ -210,17 +210,19 @@ std::vector<TrailedStar> find_stars_and_psf(Scene& scene) {
   constexpr int enough_stars = 30;
   std::vector<TrailedStar> stars = find_trailed_stars(scene);
   for (int round = 0; round < 2 && scene.psf.stars < enough_stars; ++round) {
-    constexpr double much = 0.05;  // relative change of the width
+    constexpr double little = 0.05, much = 0.2;  // relative change of the width
     const double before_px = scene.psf.width_px;
     std::vector<Trail> trails;
     for (const TrailedStar& star : stars) trails.push_back(star.trail);
     const PsfField psf = measure_psf_of_trails(scene, trails);
     if (psf.stars <= scene.psf.stars) break;
     scene.use(psf);
+    const double change = std::abs(psf.width_px / before_px - 1);
+    if (change < little && psf.is_round_gaussian()) break;
     auto again = find_trailed_stars(scene);
     if (again.empty()) break;
     stars = std::move(again);
-    if (std::abs(psf.width_px / before_px - 1) < much) break;
+    if (change < much) break;
   }
   return stars;
 }

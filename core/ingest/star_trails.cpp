@@ -24,7 +24,7 @@ constexpr double min_fwhm_px = 0.5, max_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
 // A shorter trail looks as coma and astigmatism do, which the PSF follows.
 constexpr double min_trail_sigmas = 4.0;
-constexpr double min_alike_sigmas = 4.5;  // of trails that are measured by lines of images
+constexpr double min_alike_sigmas = 4.5;  // trails that lines of images measure
 constexpr double round_variances = 0.5;   // difference of variances of a round image, of the PSF's
 
 /// A mount at rest: the camera turns with the Earth.
@@ -157,7 +157,7 @@ std::optional<PixelPosition> trail_of_alike(const StarShape& shape) {
     return std::hypot(e.plus, e.cross) < round_variances * shape.sigma_px * shape.sigma_px;
   });
   if (!alike || alike->count < std::size_t(round)) return std::nullopt;
-  // Of shorter lines only the longer ones are seen.
+  // Lines that are shorter are measured only where noise makes them longer.
   if (std::hypot(alike->trail.x_px, alike->trail.y_px) < min_alike_sigmas * shape.sigma_px)
     return std::nullopt;
   return alike->trail;
