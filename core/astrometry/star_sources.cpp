@@ -151,6 +151,16 @@ std::vector<PlateSource> sources_of_trails(const CountImage& counts,
   return sources;
 }
 
+/// The line of a fitted image; empty if it is round.
+std::optional<StreakMotion> line_of_star(const TrailFit& fit) {
+  constexpr int at_length = 3, at_angle = 4;
+  constexpr int parameters = 6;  // a line has five, the background one
+  if (!(fit.trails[0].length_px > 0) || fit.parameters < parameters) return std::nullopt;
+  const double scale = std::max(1.0, fit.reduced_chi2());
+  return streak_motion(fit.trails[0], scale * fit.cov(at_length, at_length),
+                       scale * fit.cov(at_angle, at_angle));
+}
+
 }  // namespace
 
 std::vector<PlateSource> find_star_sources(const CountImage& counts,
@@ -192,6 +202,7 @@ std::optional<StarShape> measure_star_shape(const CountImage& counts,
     if (!fit) continue;
     const Trail& trail = fit->trails[0];
     lengths.push_back(trail.length_px);
+    if (const auto line = line_of_star(*fit)) shape.lines.push_back(*line);
     shape.ellipses.push_back({m->x, m->y, m->xx - m->yy, 2 * m->xy});
     if (trail.length_px > 0) {
       c += std::cos(2 * trail.angle_rad);

@@ -6,6 +6,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/detection/known/star_motion.h"
+#include "core/detection/stars/alike_streaks.h"
 
 namespace dmise {
 
@@ -41,6 +42,7 @@ struct StarShape {
   double angle_rad = 0.0;             // direction of the trails, against x towards y
   int stars = 0;                      // that were fitted
   std::vector<StarEllipse> ellipses;  // one for each star
+  std::vector<StreakMotion> lines;    // those longer than wide
 };
 
 /// Measures it in the brightest images that are not saturated; empty if there are fewer than five.

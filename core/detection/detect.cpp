@@ -205,11 +205,33 @@ void detect_in(Scene& scene, Background& background, FilteredFrame& filtered,
   result.report.detections = std::uint32_t(result.detections.size());
 }
 
+/// Stars that trail. Where few of them were alone, they measure the PSF now.
+std::vector<TrailedStar> find_stars_and_psf(Scene& scene) {
+  constexpr int enough_stars = 30;
+  std::vector<TrailedStar> stars = find_trailed_stars(scene);
+  for (int round = 0; round < 2 && scene.psf.stars < enough_stars; ++round) {
+    constexpr double little = 0.05, much = 0.2;  // relative change of the width
+    const double before_px = scene.psf.width_px;
+    std::vector<Trail> trails;
+    for (const TrailedStar& star : stars) trails.push_back(star.trail);
+    const PsfField psf = measure_psf_of_trails(scene, trails);
+    if (psf.stars <= scene.psf.stars) break;
+    scene.use(psf);
+    const double change = std::abs(psf.width_px / before_px - 1);
+    if (change < little && psf.is_round_gaussian()) break;
+    auto again = find_trailed_stars(scene);
+    if (again.empty()) break;
+    stars = std::move(again);
+    if (change < much) break;
+  }
+  return stars;
+}
+
 /// Detects in a frame less its stars' trails, which it shows itself. Returns false if there are
 /// none or too many to find in bounded time.
-bool detect_among_trails(const Scene& with_stars, const FrameHeader& header,
+bool detect_among_trails(Scene& with_stars, const FrameHeader& header,
                          const DetectSettings& settings, Threads& threads, Found& found) {
-  const std::vector<TrailedStar> stars = find_trailed_stars(with_stars);
+  const std::vector<TrailedStar> stars = find_stars_and_psf(with_stars);
   if (stars.empty()) return false;
   StarlessFrame frame = without_stars(with_stars, stars);
   Background background(frame.counts, detection_limits::background_cell_px, threads);

@@ -12,6 +12,7 @@
 #include "core/detection/light/psf.h"
 #include "core/detection/make_report.h"
 #include "core/detection/pixels/detection_limits.h"
+#include "core/detection/stars/alike_streaks.h"
 #include "core/detection/stars/common_trail.h"
 #include "core/frames/earth_orientation.h"
 #include "core/time/iso8601.h"
@@ -22,7 +23,9 @@ namespace {
 constexpr double min_fwhm_px = 0.5, max_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
 // A shorter trail looks as coma and astigmatism do, which the PSF follows.
-constexpr double min_trail_sigmas = 3.5;
+constexpr double min_trail_sigmas = 4.0;
+constexpr double min_alike_sigmas = 4.5;  // trails that lines of images measure
+constexpr double round_variances = 0.5;   // difference of variances of a round image, of the PSF's
 
 /// A mount at rest: the camera turns with the Earth.
 void set_at_rest(FrameHeader& header) {
@@ -147,6 +150,28 @@ std::optional<PixelPosition> measured_trail(const StarShape& shape) {
   return PixelPosition{length_px * std::cos(angle_rad), length_px * std::sin(angle_rad)};
 }
 
+/// The trail that most images agree in by their fitted lines, if no more of them are round.
+std::optional<PixelPosition> trail_of_alike(const StarShape& shape) {
+  const auto alike = alike_motions(shape.lines);
+  const auto round = std::ranges::count_if(shape.ellipses, [&](const StarEllipse& e) {
+    return std::hypot(e.plus, e.cross) < round_variances * shape.sigma_px * shape.sigma_px;
+  });
+  if (!alike || alike->count < std::size_t(round)) return std::nullopt;
+  // Lines that are shorter are measured only where noise makes them longer.
+  if (std::hypot(alike->trail.x_px, alike->trail.y_px) < min_alike_sigmas * shape.sigma_px)
+    return std::nullopt;
+  return alike->trail;
+}
+
+/// Whether a trail by edges contradicts that of most images: it has another direction, or is
+/// shorter. Long trails that touch make images longer or shorter than they are.
+bool contradicts(const PixelPosition& edges, const PixelPosition& images, double sigma_px) {
+  const double length_px = std::hypot(images.x_px, images.y_px);
+  const double along = std::abs(edges.x_px * images.x_px + edges.y_px * images.y_px) / length_px;
+  const double across = std::abs(edges.x_px * images.y_px - edges.y_px * images.x_px) / length_px;
+  return across > std::max(2 * sigma_px, 0.1 * along) || along < length_px - 2 * sigma_px;
+}
+
 std::string trail_text(const PixelPosition& trail) {
   return formatted("stars trail by %.3g px at %.1f deg to the rows",
                    std::hypot(trail.x_px, trail.y_px), std::atan2(trail.y_px, trail.x_px) / deg);
@@ -170,6 +195,8 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
   const bool is_short = shape.length_px > 0 && shape.length_px < short_in_widths * shape.sigma_px;
   std::optional<PixelPosition> trail;
   if (!is_short && are_aligned(shape)) trail = trail_by_edges(counts, header, threads);
+  const auto alike = trail_of_alike(shape);
+  if (alike && (!trail || contradicts(*trail, *alike, shape.sigma_px))) trail = alike;
   if (!trail) trail = measured_trail(shape);
   if (trail && std::hypot(trail->x_px, trail->y_px) < min_trail_sigmas * shape.sigma_px) {
     cards.assumed(

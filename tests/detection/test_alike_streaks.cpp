@@ -61,6 +61,20 @@ TEST(AlikeStreaks, AreThreeOrMore) {
   EXPECT_FALSE(alike_streaks({}));
 }
 
+// Short trails have a tolerance as wide as a tenth of all streaks: only how closely they agree
+// tells them from chance.
+TEST(AlikeStreaks, AreKnownByHowCloselyTheyAgree) {
+  std::vector<Source> all;
+  for (int i = 0; i < 5; ++i)
+    all.push_back(streak(100 + 311 * i % 600, 100 + 173 * i % 571, 15 + 0.2 * (i % 3 - 1),
+                         angle_rad + 0.005 * (i % 3 - 1)));
+  for (int i = 0; i < 5; ++i) all.push_back(streak(80 + 120 * i, 300, 25 + 40 * i, 0.3 + 0.6 * i));
+  const auto alike = alike_streaks(all);
+  ASSERT_TRUE(alike);
+  EXPECT_EQ(alike->count, 5u);
+  EXPECT_NEAR(std::hypot(alike->trail.x_px, alike->trail.y_px), 15.0, 0.3);
+}
+
 TEST(AlikeStreaks, AreNotThoseOfATrain) {
   std::vector<Source> train;
   for (int i = 0; i < 8; ++i)

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/units.h"
 #include "core/detection/detect.h"
+#include "core/detection/stars/psf_measure.h"
 #include "tests/support/simulated_frame.h"
 #include "tests/support/simulated_scene.h"
 
@@ -63,6 +65,27 @@ TEST(TrailedStars, AreFoundWithoutACatalogue) {
       }
   EXPECT_GE(seen, 57);  // some lie on others
   EXPECT_LE(found.size(), trails.stars.size() + 2);
+}
+
+// Widths are those that the simulation draws.
+TEST(TrailedStars, MeasureThePsfWhereTheHeaderIsWrong) {
+  Trails trails(60);
+  const double drawn_px = trails.header.psf_fwhm_px;
+  trails.header.psf_fwhm_px = 1.5 * drawn_px;
+  const SimulatedScene simulated(trails.header, trails.counts);
+  std::vector<Trail> found;
+  for (const TrailedStar& star : find_trailed_stars(simulated.scene)) found.push_back(star.trail);
+  const PsfField psf = measure_psf_of_trails(simulated.scene, found);
+  EXPECT_GE(psf.stars, 20);
+  EXPECT_NEAR(fwhm_per_sigma * psf.width_px, drawn_px, 0.05 * drawn_px);
+}
+
+TEST(TrailedStars, MeasureNoPsfWhereFew) {
+  const Trails trails(5);
+  const SimulatedScene simulated(trails.header, trails.counts);
+  std::vector<Trail> found;
+  for (const TrailedStar& star : find_trailed_stars(simulated.scene)) found.push_back(star.trail);
+  EXPECT_EQ(measure_psf_of_trails(simulated.scene, found).stars, 0);
 }
 
 TEST(TrailedStars, LeavePointsToBeFoundUnderAnyMount) {

@@ -15,7 +15,8 @@ inline constexpr double comparison_settled_chi2 = 0.05;
 double share_of_trails_on(const Scene& scene, const Trail& line);
 
 /// Whether a streak is so short that it may be a row of stars, which is `row_px` long without their
-/// trails. Trails may follow each other along a streak that has their direction.
+/// trails, or more where the PSF is wide. Trails may follow each other along a streak that has
+/// their direction.
 bool may_be_row_of_stars(const Scene& scene, const Trail& streak, double row_px);
 
 /// Deviance of the pixels for a fit of `count` stars in a row along the line.
@@ -34,8 +35,8 @@ bool point_beats_star(const Scene& scene, const Source& source);
 /// Whether a point is what is left of two stars whose trails overlap, of which one was subtracted.
 bool is_of_overlapping_trails(const Scene& scene, const Source& point);
 
-/// Whether a line explains the light around the source better than two, three or four stars in a
-/// row, and than a piece of one star's trail; true also if a catalogue would have these stars.
+/// Whether a line explains the light around the source better than two to five stars in a row, and
+/// than a piece of one star's trail; true also if a catalogue would have these stars.
 bool beats_stars(const Scene& scene, const Source& source);
 
 /// Whether a much wider line explains the light better, as of a galaxy seen from its side.

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "core/base/algebra/small_matrix.h"
 #include "core/base/numeric/quantile.h"
 #include "core/detection/light/psf_shape.h"
 #include "core/detection/light/psf_star_fit.h"
+#include "core/detection/source/residual_frame.h"
 #include "core/detection/source/source_fit.h"
 #include "core/detection/stars/psf_ellipse.h"
 #include "core/detection/stars/psf_stars.h"
@@ -18,15 +20,16 @@ namespace {
 constexpr std::size_t min_stars = 8, least_for_slopes = 30;
 constexpr std::size_t max_candidates = 200, max_stars = 100;
 constexpr std::size_t max_core_pixels = 12000, max_shape_pixels = 20000, min_shape_pixels = 30;
-constexpr double shape_widths = 10.0;   // reach of the shape, in units of the width
-constexpr double width_floor = 0.01;    // scatter of widths that is no change over the frame
-constexpr double trails_from_px = 1.5;  // a shorter trail can't be told from a point
+constexpr double shape_widths = 10.0;       // reach of the shape, in units of the width
+constexpr double trail_shape_widths = 5.0;  // where trails lie beside each other
+constexpr double width_floor = 0.01;        // scatter of widths that is no change over the frame
+constexpr double trails_from_px = 1.5;      // a shorter trail can't be told from a point
 // Rings of an obscured aperture are no Gaussian, by ten times the noise of a bright star.
 constexpr double max_reduced_chi2 = 40.0, most_of_median_chi2 = 3.0;
 constexpr double outlier_scatters = 4.0;
 
 struct Star {
-  const Component* component;
+  const Component* component;  // null: it is known by its trail
   StarWidth fit;
 };
 
@@ -185,15 +188,94 @@ std::vector<ShapeStar> shape_stars(const Scene& scene, const ComponentMap& map,
   return out;
 }
 
+/// The field of a frame, before anything is measured.
+PsfField field_of(const Scene& scene) {
+  PsfField field;
+  field.centre = {(scene.counts.columns - 1) / 2.0, (scene.counts.rows - 1) / 2.0};
+  field.half = {scene.counts.columns / 2.0, scene.counts.rows / 2.0};
+  return field;
+}
+
+/// Usable pixels around one of the subtracted stars, with its light.
+std::vector<FitPixel> pixels_with(ResidualFrame& starless, const Trail& star, const Trail& around,
+                                  double reach_px) {
+  starless.restore(star);
+  auto pixels = starless.pixels_around(around, reach_px);
+  starless.subtract(star);
+  return pixels;
+}
+
+/// The brightest trails whose widths can be fitted, with their fits.
+struct FittedTrails {
+  std::vector<Trail> trails;
+  std::vector<Star> stars;
+};
+
+FittedTrails fit_trails_of_stars(const Scene& scene, ResidualFrame& starless,
+                                 std::span<const Trail> trails) {
+  constexpr std::size_t max_trails = 60, max_pixels = 60000;
+  std::vector<Trail> brightest(trails.begin(), trails.end());
+  std::ranges::stable_sort(brightest, std::greater(), &Trail::flux_e);
+  FittedTrails out;
+  std::size_t used = 0;
+  for (const Trail& trail : brightest) {
+    if (out.stars.size() == max_trails || used > max_pixels) break;
+    const double width_px = scene.psf.width_px;
+    const auto pixels = pixels_with(starless, trail, trail, core_reach_px(width_px));
+    if (pixels.empty() || pixels.size() < std::size_t(0.9 * trail.length_px * width_px)) continue;
+    used += pixels.size();
+    const auto fit = fit_star_width(pixels, trail, width_px, background_sigma_e(pixels.front()));
+    if (!fit || fit->reduced_chi2 > max_reduced_chi2) continue;
+    out.trails.push_back(trail);
+    out.stars.push_back({nullptr, *fit});
+  }
+  return out;
+}
+
+/// Whether a fit was kept.
+bool has(const std::vector<Star>& stars, const Trail& fitted) {
+  return std::ranges::any_of(stars, [&](const Star& star) {
+    return star.fit.trail.x_px == fitted.x_px && star.fit.trail.y_px == fitted.y_px;
+  });
+}
+
 }  // namespace
+
+PsfField measure_psf_of_trails(const Scene& scene, std::span<const Trail> trails) {
+  if (trails.size() < min_stars) return scene.psf;
+  ResidualFrame starless(scene);
+  for (const Trail& trail : trails) starless.subtract(trail);
+  const FittedTrails fitted = fit_trails_of_stars(scene, starless, trails);
+  std::vector<Star> stars = fitted.stars;
+  drop_bad_fits(stars);
+  if (stars.size() < min_stars) return scene.psf;
+  PsfField field = field_of(scene);
+  fit_field(stars, field);
+  if (stars.size() < min_stars) return scene.psf;
+  field.stars = int(stars.size());
+  std::vector<ShapeStar> shapes;
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < fitted.stars.size() && used < max_shape_pixels; ++i) {
+    const StarWidth& fit = fitted.stars[i].fit;
+    if (!has(stars, fit.trail)) continue;
+    ShapeStar shape{.trail = fit.trail, .background_e = fit.background_e};
+    shape.pixels = pixels_with(starless, fitted.trails[i], fit.trail,
+                               std::max(trail_shape_widths * field.width_px, 4.0));
+    if (shape.pixels.size() < min_shape_pixels) continue;
+    used += shape.pixels.size();
+    shape.background_sigma_e = background_sigma_e(shape.pixels.front());
+    shapes.push_back(std::move(shape));
+  }
+  fit_psf_ellipse(shapes, field);
+  fit_psf_shape(shapes, field);
+  return field;
+}
 
 PsfField measure_psf(const Scene& scene, const std::vector<Component>& components) {
   const auto candidates = psf_candidates(scene, components);
   if (candidates.size() < min_stars) return scene.psf;
   const ComponentMap map(components, scene.counts.columns, scene.counts.rows);
-  PsfField field;
-  field.centre = {(scene.counts.columns - 1) / 2.0, (scene.counts.rows - 1) / 2.0};
-  field.half = {scene.counts.columns / 2.0, scene.counts.rows / 2.0};
+  PsfField field = field_of(scene);
   double width_px = scene.psf.width_px;
   std::vector<Star> stars;
   for (int round = 0; round < 3; ++round) {  // again where the header's width was far off

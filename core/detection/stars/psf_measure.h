@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "core/detection/light/psf.h"
@@ -12,5 +13,9 @@ namespace dmise {
 /// significant, and the shape with its wings. Returns `scene.psf`, the header's, where fewer than 8
 /// stars are bright, whole and alone. Uses one thread.
 PsfField measure_psf(const Scene& scene, const std::vector<Component>& components);
+
+/// Measures it from stars whose trails were found, each without the light of the others, also where
+/// few are alone. Returns `scene.psf` where it cannot.
+PsfField measure_psf_of_trails(const Scene& scene, std::span<const Trail> trails);
 
 }  // namespace dmise

@@ -9,7 +9,8 @@
 namespace dmise {
 namespace {
 
-constexpr float min_peak_snr = 20.0f;
+constexpr float bright_peak_snr = 20.0f, min_peak_snr = 10.0f;
+constexpr std::size_t enough_bright = 30;  // so many make fainter ones needless
 constexpr int zones_across = 6, zones_down = 4;
 constexpr double max_extent_px = 400.0;  // a star with a longer trail is rarely alone
 constexpr double max_sigmas = 30.0;      // reach of a star's light by the header's Gaussian
@@ -41,6 +42,8 @@ std::vector<const Component*> psf_candidates(const Scene& scene,
   for (const Component& c : components)
     if (has_extent_of_star(scene, c)) bright.push_back(&c);
   std::sort(bright.begin(), bright.end(), is_brighter);
+  while (bright.size() > enough_bright && bright.back()->peak_snr < bright_peak_snr)
+    bright.pop_back();
   // First the brightest of each zone, then the second of each.
   std::array<int, zones_across * zones_down> in_zone{};
   std::vector<std::pair<int, const Component*>> ranked;
