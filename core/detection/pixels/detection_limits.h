@@ -20,7 +20,7 @@ inline constexpr double min_snr_in_stars = 10.0;
 // Minimum SNR at which a streak's evenness is measurable: in total, and per px.
 inline constexpr double even_snr = 25.0, even_snr_per_px = 5.0;
 // Deviance by which a short streak must beat two blended stars; a point that is no star; a row of
-// two to five stars, corrected for chance; a star's trail beside another's.
+// two to four stars, corrected for chance; a star's trail beside another's.
 inline constexpr double blend_margin = 16.0, line_margin = 8.0, chain_margin = 6.0,
                         trail_margin = 4.0;
 // Length of stars' trails in sigmas of the PSF, from which two points are no blend of two stars.

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-constexpr int max_stars = 5;  // in a row, that may imitate a streak
+constexpr int max_stars = 4;  // in a row, that may imitate a streak
 
 /// `count` stars in a row along the line, which share its flux.
 std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
@@ -144,8 +144,8 @@ double share_of_trails_on(const Scene& scene, const Trail& line) {
 
 bool may_be_row_of_stars(const Scene& scene, const Trail& streak, double row_px) {
   constexpr double across_trails = 3.0, along_trails = 10.0;  // lengths of a star's trail
-  // Stars up to 2.5 FWHM apart are one light: so long are five of them, with their own widths.
-  constexpr double max_row_sigmas = 28.0;
+  // Stars up to 2.5 FWHM apart are one light: as long as four of them, with their own widths.
+  constexpr double max_row_sigmas = 22.0;
   const Trail star = scene.star_trail(streak.x_px, streak.y_px);
   const double trails =
       across_trails + (along_trails - across_trails) * share_of_trails_on(scene, streak);

@@ -35,7 +35,7 @@ bool point_beats_star(const Scene& scene, const Source& source);
 /// Whether a point is what is left of two stars whose trails overlap, of which one was subtracted.
 bool is_of_overlapping_trails(const Scene& scene, const Source& point);
 
-/// Whether a line explains the light around the source better than two to five stars in a row, and
+/// Whether a line explains the light around the source better than two to four stars in a row, and
 /// than a piece of one star's trail; true also if a catalogue would have these stars.
 bool beats_stars(const Scene& scene, const Source& source);
 
