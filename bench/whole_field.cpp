@@ -20,7 +20,6 @@ namespace dmise {
 namespace {
 
 constexpr int samples_a_side = 160;
-constexpr double wide_rad = 30.0 * deg;  // half a field that looks at the zenith, more often
 constexpr double zenith_chance = 0.6, night_chance = 0.3, orbit_chance = 0.2;
 
 /// A time at which the Sun is about as high over a place as wanted, by its mean motion.
@@ -151,7 +150,7 @@ SceneTrial try_whole_field(const std::string& camera, int number, std::uint64_t 
   SceneTrial trial{.scene = {number, (directory / "scene.yaml").string(), field.what}};
   std::ofstream(trial.scene.path) << field.yaml;
   const SceneFrames frames(load_scenario(trial.scene.path), "eye", 1, threads);
-  SensorConfig sensor = frames.sensor();
+  const SensorConfig& sensor = frames.sensor();
   const View view(sensor, frames.times(), frames.states(), frames.scenario().seed);
   const PlanFacts facts =
       ExposurePlanner(sensor, nullptr, frames.scenario().faintest_star_mag, nullptr)
