@@ -49,11 +49,12 @@ DETECTORS = ("dmise", *SETTINGS)
 
 def satsim_frames(python, directory, seed, count, a_process=20):
     """Its memory grows with each frame, so that a process draws few."""
-    drawn = directory / f"satsim-{seed}-{count}.json"
+    script = HERE / "satsim_frames.py"
+    drawn = directory / f"satsim-{seed}-{count}-{hashlib.sha256(script.read_bytes()).hexdigest()[:12]}.json"
     said = json.loads(drawn.read_text()) if drawn.exists() else []
     for first in range(seed, seed + count, a_process) if not said else ():
         number = min(a_process, seed + count - first)
-        done = subprocess.run([python, HERE / "satsim_frames.py", directory, str(first), str(number)], capture_output=True, text=True,
+        done = subprocess.run([python, script, directory, str(first), str(number)], capture_output=True, text=True,
                               env={**os.environ, "TF_CPP_MIN_LOG_LEVEL": "3"})
         if done.returncode:
             raise referee.Failure(f"satsim: {done.stderr.strip().splitlines()[-1]}")
@@ -99,8 +100,8 @@ def with_photutils(counts, header, threshold, wider=1.0):
 
 
 def kept(path, name, find):
-    """What another detector finds in a frame with each of its settings; it is kept beside the frame, for frames that are kept."""
-    digest = hashlib.sha256(f"{name} {SETTINGS[name]} {peer_detectors.versions()}".encode()).hexdigest()[:12]
+    """What another detector finds in a frame with each of its settings; it is kept beside the frame, for the same bytes, settings and versions."""
+    digest = hashlib.sha256(f"{name} {SETTINGS[name]} {versions()}".encode() + path.read_bytes()).hexdigest()[:12]
     file = path.with_name(f"{path.stem}-{name}-{digest}.npz")
     if not file.exists():
         found = [find(**setting) for setting in SETTINGS[name]]

@@ -252,7 +252,7 @@ class Launch {
     while (processes_.poll() && !stop.is_set()) {
       // While this process was suspended it could not receive anything.
       if (Seconds(Clock_::now() - awake).count() > scenario_.network.silent_after_s / 2)
-        answered = Clock_::now();
+        heard = answered = Clock_::now();
       awake = Clock_::now();
       if (!first_death && processes_.first_failure()) first_death = Clock_::now();
       // The master decides what a dead node means; it has `silent_after_s`, and a little more.

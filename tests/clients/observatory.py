@@ -291,8 +291,10 @@ def lone_star(image, below):
     inner = image[40:-40, 40:-40]
     for index in numpy.argsort(inner, axis=None)[::-1]:
         row, column = (axis + 40 for axis in numpy.unravel_index(index, inner.shape))
+        if image[row, column] >= below:
+            continue
         part = around(image, (row, column))
-        if image[row, column] < below and part.max() == part[20, 20] and part[far].max() < 0.01 * part.max() + 200:
+        if part.max() == part[20, 20] and part[far].max() < 0.01 * part.max() + 200:
             return row, column
     raise Failure("no star stands alone")
 
