@@ -29,7 +29,10 @@ produce() {  # NAME COMMAND..
   local name=$1 scenario=$scenario
   shift
   [[ $name != *-taking-states ]] || scenario=$taking
-  "$dmise" "$@" "$scenario" --out "$work/$name" >"$work/$name.log" 2>&1 ||
+  # Processes of a network must hear each other within seconds: at idle priority they may not.
+  local at=()
+  [[ $1 != launch ]] || at=(chrt --other 0)
+  "${at[@]}" "$dmise" "$@" "$scenario" --out "$work/$name" >"$work/$name.log" 2>&1 ||
     fail "$name: $(tail -n 2 "$work/$name.log")"
 }
 
