@@ -84,7 +84,8 @@ class Coordinator {
   void heartbeat(const std::string& name, bool computing, std::uint64_t progress, Instant now);
   /// Its connection broke: it must be heard within `suspect_after`.
   void suspect(const std::string& name, Instant now);
-  void leave(const std::string& name, bool interrupted, Instant now = Instant{0});
+  void leave(const std::string& name, bool interrupted, Instant now = Instant{0},
+             const std::string& cause = "");
   void fail(const std::string& name, const std::string& reason);
 
   // Reports of agents about the nodes behind them; reports of an earlier incarnation are ignored.

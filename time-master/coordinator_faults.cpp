@@ -46,7 +46,8 @@ void Coordinator::excuse(Instant since, Instant now) {
   for (auto& [name, member] : members_) member.pulse.excuse(since, now);
 }
 
-void Coordinator::leave(const std::string& name, bool interrupted, Instant now) {
+void Coordinator::leave(const std::string& name, bool interrupted, Instant now,
+                        const std::string& cause) {
   Member* member = active(name);
   if (!member) return;
   if (over()) {
@@ -54,7 +55,11 @@ void Coordinator::leave(const std::string& name, bool interrupted, Instant now) 
     return;
   }
   if (phase_ == Phase::gathering || member->is_guest()) return forget(name);
-  lost(*member, interrupted ? "was interrupted" : "left before the end", now);
+  lost(*member,
+       interrupted     ? "was interrupted"
+       : cause.empty() ? "left before the end"
+                       : "gave up: " + cause,
+       now);
 }
 
 void Coordinator::fail(const std::string& name, const std::string& reason) {

@@ -218,7 +218,7 @@ void MasterProcess::leave(const std::string& name) {
   if (name.empty()) return;
   times_[name] = take(leave.times());
   handle_host_report(name, leave.nodes(), {});
-  coordinator_.leave(name, leave.interrupted(), now());
+  coordinator_.leave(name, leave.interrupted(), now(), leave.cause());
   spdlog::debug("{} left", name);
 }
 

@@ -370,6 +370,13 @@ TEST(Coordinator, FailsWhenANodeLeavesBeforeTheEnd) {
   EXPECT_EQ(master.cause(), "camera was interrupted (last tick done: -1 of 9)");
 }
 
+TEST(Coordinator, SaysWhyANodeGaveUp) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.leave("camera", false, seconds(6), "the time-master has been silent for 5.1 s");
+  EXPECT_EQ(master.cause(),
+            "camera gave up: the time-master has been silent for 5.1 s (last tick done: -1 of 9)");
+}
+
 TEST(Coordinator, DoesNoTickTwiceAndLosesNone) {
   Coordinator master = started(options({"orbit"}, 9, 4));
   master.done("orbit", 0);

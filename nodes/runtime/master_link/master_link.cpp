@@ -129,6 +129,7 @@ void MasterLink::leave(bool interrupted, const TimeSplit& times) {
   v1::NodeMessage message;
   auto* leave = message.mutable_leave();
   leave->set_interrupted(interrupted);
+  if (phase() == v1::PHASE_FAILED) leave->set_cause(cause());
   put(leave->mutable_times(), times);
   put(leave->mutable_times(), process_memory());
   send(std::move(message));

@@ -141,8 +141,9 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
                         are_names(message.heartbeat().holding()),
                     "heartbeat: invalid name or time");
     case v1::NodeMessage::kLeave:
-      return unless(good(message.leave().times()) && all_good(message.leave().nodes()),
-                    "leave: invalid time");
+      return unless(good(message.leave().times()) && all_good(message.leave().nodes()) &&
+                        is_text(message.leave().cause()),
+                    "leave: invalid time or cause");
     case v1::NodeMessage::kNodeNews:
       return unless(
           is_name(message.node_news().name()) && is_tick_or_none(message.node_news().done_tick()),
