@@ -8,6 +8,7 @@
 #include "core/config/objects/breakup_config.h"
 #include "core/config/objects/generators/population_config.h"
 #include "core/config/objects/generators/walker_config.h"
+#include "core/config/objects/reentry_config.h"
 #include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
@@ -98,6 +99,8 @@ const Section& own_section() {
            optional("panel", form::map(panel_section),
                     "The panel of its geometry that faces the Sun."),
            optional("geometry", form::map(geometry_section), "Its shape; needs an attitude."),
+           optional("reentry", form::map(reentry_section),
+                    "Light of its own by height, as it burns in the air; without a geometry."),
            optional("model", form::text(),
                     "A shipped model (`dmise list models`) or a file of one, in place of geometry "
                     "and panel. Its attitude holds unless the object has one.")},
@@ -226,6 +229,10 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
     object.catalogue_number = static_cast<std::uint32_t>(number->integer());
   object.motion = read_motion(map.require("motion"), start, object.name, earth);
   read_appearance(map, object);
+  if (const auto reentry = map.find("reentry")) {
+    if (object.geometry) reentry->fail("goes without a shape", false);
+    object.reentry = read_reentry(*reentry);
+  }
   object.sphere = read_sphere(map);
   map.done();
   if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))

@@ -14,6 +14,7 @@
 #include "core/orbit/debris/debris_population.h"
 #include "core/orbit/sgp4/walker.h"
 #include "core/photometry/diffuse_sphere.h"
+#include "core/photometry/reentry_light.h"
 #include "core/time/julian_date.h"
 
 namespace dmise {
@@ -47,7 +48,8 @@ struct OwnObject {
   std::optional<GeometryConfig> geometry;
   DiffuseSphere sphere;         // without a geometry
   std::string model_path = {};  // the model that gave attitude, panel and geometry; may be empty
-  std::optional<Glints> glints = {};  // taken from that model
+  std::optional<Glints> glints = {};         // taken from that model
+  std::optional<ReentryLight> reentry = {};  // without a geometry
 };
 
 /// How a node of the user's moves or turns an object; null: none does.

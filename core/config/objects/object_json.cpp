@@ -135,6 +135,11 @@ void write_own(JsonWriter& json, const OwnObject& object) {
   if (object.geometry) json.field("geometry", object.geometry->digest);
   if (object.panel) write_panel(json, *object.panel, object.geometry.has_value());
   if (object.glints) write_glints(json, *object.glints);
+  if (object.reentry) {
+    json.list("reentry_height_m", object.reentry->height_m);
+    json.list("reentry_magnitude", object.reentry->v_mag);
+    json.field("reentry_range_m", object.reentry->range_m);
+  }
   json.end_object();
 }
 

@@ -493,6 +493,8 @@ class Object(TypedDict, total=False):
     """The panel of its geometry that faces the Sun."""
     geometry: Geometry
     """Its shape; needs an attitude."""
+    reentry: Reentry
+    """Light of its own by height, as it burns in the air; without a geometry."""
     model: Text
     """A shipped model (`dmise list models`) or a file of one, in place of geometry and panel. Its attitude holds unless the
     object has one."""
@@ -606,6 +608,16 @@ class Geometry(TypedDict, total=False):
     chassis: Text
     """Material of the chassis of a starlink-like satellite. Default: starlink-v1.5-chassis."""
 
+
+class Reentry(TypedDict, total=False):
+    """The light of an object that burns in the air, beside the Sun's."""
+
+    height_m: Required[Sequence[float]]
+    """Heights over the ellipsoid, ascending [m]. Above and below them there is no light."""
+    magnitude: Required[Sequence[float]]
+    """V magnitude at each height, seen from `range_m`; linear between them."""
+    range_m: float
+    """Distance from which the magnitudes are [m]. Default: 1e+05."""
 
 
 class Node(TypedDict, total=False):
