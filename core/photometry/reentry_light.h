@@ -7,7 +7,7 @@ namespace dmise {
 struct ReentryLight {
   std::vector<double> height_m;  // over the ellipsoid, ascending, two or more
   std::vector<double> v_mag;     // at `range_m`, one for each height
-  double range_m = 100e3;        // of the magnitudes; meteors' are of 100 km
+  double range_m = 100e3;        // from which the magnitudes are; meteors have 100 km
 
   /// Light at `range_m` over that of magnitude 0. Magnitudes are linear between heights; beyond the
   /// first and the last there is none.

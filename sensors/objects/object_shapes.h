@@ -81,7 +81,7 @@ class ObjectShapes {
  private:
   std::map<std::uint32_t, ObjectShape> shapes_;      // for the scenario's own objects
   std::set<std::uint32_t> own_;                      // their numbers, also of those without a shape
-  std::map<std::uint32_t, ReentryLight> reentries_;  // likewise
+  std::map<std::uint32_t, ReentryLight> reentries_;  // without a shape
   ObjectModels models_;
   std::map<const ObjectModel*, ObjectShape> of_models_;
   mutable std::unique_ptr<Renderer> renderer_;

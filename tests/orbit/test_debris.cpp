@@ -117,8 +117,8 @@ TEST(Debris, EncountersAreThoseOfTheirGeometry) {
 }
 
 // NASA's estimates of 2013, as Hall 2014 quotes them (Space Traffic Management Conference, "The
-// history of space debris"): 500,000 objects over 1 cm, more than 100 million over about 1 mm;
-// ESA's of that year: 670,000 and 170 million.
+// history of space debris"): 500,000 objects over 1 cm, more than 100 million smaller ones;
+// ESA's of that year: 670,000 over 1 cm, 170 million over 1 mm.
 TEST(Debris, NumbersAreThoseOfEstimates) {
   DebrisPopulation p{.year = 2013, .min_size_m = 0.01, .max_size_m = 10};
   p.inclinations = population().inclinations;

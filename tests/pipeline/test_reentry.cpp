@@ -14,20 +14,23 @@ namespace {
 const Vec<Gcrs> eye_m{7.4e6, 25e3, 1.5e6};
 const MotionState<Gcrs> entering{{6378137.0 + 105e3, 0, 0}, {-3000, 5000, 0}};
 
-/// A body without light of the Sun that falls from 105 km to 75 km in the exposure, seen from 1800
-/// km away.
-std::string entry_scenario(const std::string& reentry) {
+/// A body without light of the Sun that falls by 3 km a second from 105 km of height, seen from
+/// 1800 km away.
+std::string entry_scenario(const std::string& reentry, const std::string& motion = "two_body",
+                           const std::string& forces = "", const std::string& exposure_s = "10") {
   return R"(
-simulation: {start: 2018-01-21T00:15:00Z, duration_s: 20, tick_s: 1, seed: 1}
+simulation: {start: 2018-01-21T00:15:00Z, duration_s: 60, tick_s: 1, seed: 1}
 objects:
   - {name: eye, motion: {fixed: {gcrs_m: [7.4e+6, 25.0e+3, 1.5e+6]}}}
-  - {name: stage, radius_m: 0.001, motion: {two_body: {position_m: [6483137, 0, 0], velocity_m_per_s: [-3000, 5000, 0]}}, reentry: )" +
-         reentry + R"(}
+  - {name: stage, radius_m: 0.001, motion: {)" +
+         motion + R"(: {position_m: [6483137, 0, 0], velocity_m_per_s: [-3000, 5000, 0]})" +
+         forces + R"(}, reentry: )" + reentry + R"(}
 sensors:
   - name: watcher
     platform: eye
     pointing: {ra_deg: 180.0, dec_deg: -58.6}
-    exposure_s: 10
+    exposure_s: )" +
+         exposure_s + R"(
     cadence_s: 10
     sky: space
     effects: {sky: off, photon_noise: off, read_noise: off, dark_current: off, earth_disc: off, limb_air: off}
@@ -72,6 +75,33 @@ TEST(Reentry, AStreakHasTheIntegralOfItsTable) {
   // Light that begins and ends at once.
   expect_integral("{height_m: [80.0e+3, 90.0e+3], magnitude: [4, 5], range_m: 1.0e+6}",
                   {{80e3, 90e3}, {4, 5}, 1e6});
+}
+
+// The light of a flight with drag is that of its height, above 30 km.
+TEST(Reentry, AFlightThroughTheAirGlowsUntilTheTableEnds) {
+  const ReentryLight table{{30e3, 100e3}, {3, -4}};
+  Stage stage(entry_scenario("{height_m: [30.0e+3, 100.0e+3], magnitude: [3, -4]}", "numerical",
+                             ", forces: {area_to_mass_m2_per_kg: 0.02}", "0.5"));
+  const auto& object = stage.scenario.own_objects.back();
+  ASSERT_TRUE(object.motion.flight);
+  double lowest_m = 1e9;
+  int lit = 0;
+  for (std::uint32_t number = 1; number <= 5; ++number) {
+    const auto frame = stage.frame(number);
+    if (frame.truths.empty()) continue;
+    const Truth& truth = frame.truths[0];
+    const Vec<Itrs> place{truth.true_position_m.x, truth.true_position_m.y,
+                          truth.true_position_m.z};
+    const double height_m = geodetic_from_itrs(place).height_m;
+    EXPECT_LT(height_m, lowest_m);
+    lowest_m = height_m;
+    const double light = table.at(height_m);
+    if (light == 0.0) continue;
+    ++lit;
+    const double range_mag = 5 * std::log10(truth.true_range_m / 100e3);
+    EXPECT_NEAR(truth.true_magnitude, magnitude_of_light(light) + range_mag, 0.01);
+  }
+  EXPECT_GE(lit, 2);
 }
 
 TEST(Reentry, MagnitudesAreLinearInHeightAndThereIsNoLightBeyond) {

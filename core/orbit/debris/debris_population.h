@@ -17,7 +17,7 @@ inline constexpr int max_debris_objects = 1'000'000;
 struct DebrisPopulation {
   std::string name;                // objects are NAME-NUMBER, from 1, the largest first
   std::uint32_t first_number = 0;  // catalogue number of the first
-  double year = 2000.0;            // of the flux, with its fraction
+  double year = 2000.0;            // when the flux is, with its fraction
   double solar_flux_sfu = 130.0;   // at 10.7 cm, over the year before
   double scale = 1.0;              // factor of the flux
   double min_size_m = 0.01;        // diameters

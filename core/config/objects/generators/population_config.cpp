@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 constexpr double first_year = 1988.0, last_year = 2100.0;
-constexpr double lowest_m = 200e3, highest_m = 2000e3;  // of the model
+constexpr double lowest_m = 200e3, highest_m = 2000e3;  // where the model holds
 
 double year_of(const Utc& time) { return 2000.0 + (time.jd1 - 2451544.5 + time.jd2) / 365.25; }
 
