@@ -97,10 +97,11 @@ class Loader {
     auto catalogue =
         source.walker
             ? CatalogueFile{.source = source.named, .elements = elements_of(*source.walker)}
-        : source.breakup ? fragments(source, facts)
-                         : at_key(source.where, [&] { return read_catalogue(source.path); });
+        : source.breakup    ? fragments(source, facts)
+        : source.population ? debris(source, facts)
+                            : at_key(source.where, [&] { return read_catalogue(source.path); });
     for (auto& e : catalogue.elements) e.name = printable(e.name);  // as displayed and published
-    if (catalogue.elements.empty())
+    if (catalogue.elements.empty() && !source.population)
       throw ConfigError(prefix(source.where) + source.path + ": no element set could be read" +
                         (catalogue.refused.empty()
                              ? std::string()
@@ -158,6 +159,16 @@ class Loader {
           .dimensions_m = {2.0 * std::sqrt(made.pieces[k].area_m2 / pi)},
           .albedo = source.sphere.albedo};
     return {.source = source.named, .elements = std::move(made.elements)};
+  }
+
+  /// Objects of a population, of which chance may make none, and the spheres that they are.
+  CatalogueFile debris(const ObjectSource& source, ObjectFactsFile& facts) {
+    DrawnDebris drawn = draw_debris(*source.population, scenario_.seed);
+    note(describe(*source.population, drawn));
+    for (std::size_t k = 0; k < drawn.elements.size(); ++k)
+      facts.facts[drawn.elements[k].catalogue_number] = {.dimensions_m = {drawn.diameters_m[k]},
+                                                         .albedo = source.sphere.albedo};
+    return {.source = source.named, .elements = std::move(drawn.elements)};
   }
 
   /// Notes what the shapes of models lack, and patterns of the user's that fit no object. Those

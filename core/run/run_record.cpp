@@ -8,6 +8,7 @@
 #include "core/base/printable.h"
 #include "core/optics/psf_table.h"
 #include "core/orbit/breakup/breakup.h"
+#include "core/orbit/debris/debris_population.h"
 #include "core/orbit/sgp4/walker.h"
 #include "core/run/run_files.h"
 #include "core/time/iso8601.h"
@@ -135,20 +136,50 @@ Utc start_of(const RunRecord& run, const JsonRecord& object) {
   }
 }
 
+DebrisPopulation population_of(const JsonRecord& object) {
+  const auto v = object.numbers<9>("debris");
+  const auto counts = object.numbers<180>("inclinations");
+  DebrisPopulation population{
+      .name = object.get<std::string>("population"),
+      .first_number = object.get<std::uint32_t>("first_number"),
+      .year = v[0],
+      .solar_flux_sfu = v[1],
+      .scale = v[2],
+      .min_size_m = v[3],
+      .max_size_m = v[4],
+      .min_height_m = v[5],
+      .max_height_m = v[6],
+      .seed = object.has("seed") ? std::optional(object.get<std::uint64_t>("seed")) : std::nullopt,
+      .epoch = {v[7], v[8]}};
+  for (std::size_t degree = 0; degree < counts.size(); ++degree)
+    population.inclinations[degree] = int(std::clamp(counts[degree], 0.0, 1e6));
+  const bool sizes = v[3] >= 1e-3 && v[3] < v[4] && v[4] <= 10.0;
+  const bool shell = v[5] >= 0.0 && v[5] < v[6] && v[6] <= 1e7;
+  if (!sizes || !shell || !(population.mean_count() <= max_debris_objects))
+    object.fail("debris", "a population has up to " + std::to_string(max_debris_objects) +
+                              " objects within a shell");
+  return population;
+}
+
 void read_objects(const JsonRecord& record, const JsonRecord& scenario, RunRecord& run) {
   if (!scenario.has("objects")) return;
+  const auto add_made = [&](const MeanElements& e) {
+    run.own_objects.push_back({.catalogue_number = e.catalogue_number, .elements = e});
+  };
   for (const JsonRecord& object : scenario.objects("objects")) {
     if (object.has("catalogue"))
       run.catalogues.push_back({.named = object.get<std::string>("catalogue"),
                                 .only = object.texts("only"),
                                 .sha256 = ""});
     else if (object.has("walker"))
-      for (const MeanElements& e : elements_of(walker_of(object)))
-        run.own_objects.push_back({.catalogue_number = e.catalogue_number, .elements = e});
+      for (const MeanElements& e : elements_of(walker_of(object))) add_made(e);
     else if (object.has("breakup"))
       for (const MeanElements& e :
            fragments_of(breakup_of(object), run.seed, start_of(run, object)).elements)
-        run.own_objects.push_back({.catalogue_number = e.catalogue_number, .elements = e});
+        add_made(e);
+    else if (object.has("population"))
+      for (const MeanElements& e : draw_debris(population_of(object), run.seed).elements)
+        add_made(e);
     else
       run.own_objects.push_back(
           {.catalogue_number = object.get<std::uint32_t>("catalogue_number"),

@@ -86,6 +86,8 @@ std::string names_in(const Scenario& scenario) {
     if (source.walker) add(source.named + " of " + std::to_string(source.walker->satellites()));
     if (source.breakup)  // what there is depends on the seed
       add(source.named + " by " + std::to_string(source.breakup->seed.value_or(scenario.seed)));
+    if (source.population)
+      add(source.named + " by " + std::to_string(source.population->seed.value_or(scenario.seed)));
     add(source.facts_path);
     for (const auto& name : source.only) add(name);
   }

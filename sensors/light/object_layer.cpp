@@ -135,7 +135,8 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     const ObjectSample start = samples[0], middle = samples[1], end = samples[2];
     if (distance_px(start, middle) + distance_px(middle, end) > straight_enough_px)
       samples = samples_of(object, curved_arcs);
-    if (changes_abruptly(samples)) samples = samples_of(object, changing_arcs);
+    if (sampler.reentry(object) || changes_abruptly(samples))
+      samples = samples_of(object, changing_arcs);
     Deposited light;
     const double defocus_m =
         stage.defocus_at_m(range_m_of(view, object, instant(changing_arcs)), level);

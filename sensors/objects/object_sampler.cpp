@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/frames/geodesy.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 
@@ -45,7 +46,8 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
   s.sunlit = shadow_ ? shadow_->sunlit_fraction(motion.position_m) : 1.0;
   const bool hidden = at.earth && at.earth->hides_object(motion.position_m, place.direction);
   const ObjectShape* own_shape = shape(object);
-  if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_secondary_)) return s;
+  const double burning = reentry_light(object, motion, at);
+  if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_secondary_ && burning <= 0.0)) return s;
   s.electrons_per_photon_m2 =
       throughput_.of_air({place.direction, sun_bv, SightLine::Source::object,
                           view_.states().roster().objects[object].catalogue_number,
@@ -54,7 +56,7 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
   const double photons =
       own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)
                 : zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit +
-                      secondary_photons(object, motion, at);
+                      zero_mag_ * burning + secondary_photons(object, motion, at);
   s.electrons_per_s = photons * s.electrons_per_photon_m2;
   return s;
 }
@@ -78,11 +80,12 @@ double ObjectSampler::magnitude(std::size_t object, const Motion& motion,
 
 double ObjectSampler::magnitude_of_all_light(std::size_t object, const Motion& motion,
                                              const ExposureInstant& at) const {
-  if (!with_secondary_) return magnitude(object, motion, at);
+  if (!with_secondary_ && !reentry(object)) return magnitude(object, motion, at);
   if (const ObjectShape* own_shape = shape(object))
     if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m))
       return shape_magnitude(*own_shape, *pose);
   const double light = light_of_magnitude(magnitude(object, motion, at)) +
+                       reentry_light(object, motion, at) +
                        secondary_photons(object, motion, at) / zero_mag_;
   return light > 0.0 ? std::min(darkest_mag, magnitude_of_light(light)) : darkest_mag;
 }
@@ -95,6 +98,21 @@ DiffuseSphere ObjectSampler::sphere(std::size_t object, SimTime t) const {
 
 const ObjectShape* ObjectSampler::shape(std::size_t object) const {
   return shapes_ ? shapes_->of(view_.states().roster().objects[object]) : nullptr;
+}
+
+const ReentryLight* ObjectSampler::reentry(std::size_t object) const {
+  return shapes_ ? shapes_->reentry_of(view_.states().roster().objects[object].catalogue_number)
+                 : nullptr;
+}
+
+double ObjectSampler::reentry_light(std::size_t object, const Motion& motion,
+                                    const ExposureInstant& at) const {
+  const ReentryLight* light = reentry(object);
+  if (!light) return 0.0;
+  const Vec<Itrs> place_m = view_.earth().itrs_from_gcrs(at.time) * motion.position_m;
+  const double ranges = light->range_m / norm(motion.position_m - at.observer.position_m);
+  return light->at(geodetic_from_itrs(place_m, view_.sensor().ellipsoid).height_m) * ranges *
+         ranges;
 }
 
 double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,

@@ -58,6 +58,8 @@ class ObjectSampler {
 
   /// Null for an object without a shape.
   const ObjectShape* shape(std::size_t object) const;
+  /// Null for an object that has no light of its own at any height.
+  const ReentryLight* reentry(std::size_t object) const;
   const ObjectShapes& shapes() const { return *shapes_; }
 
   /// Photons/s/m2 above the atmosphere of an object with a shape; without light of Earth and Moon,
@@ -69,6 +71,8 @@ class ObjectSampler {
  private:
   /// What an object without a shape is, at a time.
   DiffuseSphere sphere(std::size_t object, SimTime t) const;
+  /// Light of its own that an object sends to the observer, over that of magnitude 0.
+  double reentry_light(std::size_t object, const Motion& motion, const ExposureInstant& at) const;
   double secondary_photons(std::size_t object, const Motion& motion,
                            const ExposureInstant& at) const;
 

@@ -38,6 +38,7 @@ ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& ba
   };
   for (const auto& object : objects) {
     own_.insert(object.catalogue_number);
+    if (object.reentry) reentries_.emplace(object.catalogue_number, *object.reentry);
     if (object.geometry)
       shapes_.emplace(object.catalogue_number,
                       shape(*object.geometry, object.panel, object.glints));
@@ -66,6 +67,11 @@ const ObjectShape* ObjectShapes::of(const ObjectInfo& object) const {
 const ObjectShape* ObjectShapes::of(std::uint32_t catalogue_number) const {
   const auto found = shapes_.find(catalogue_number);
   return found == shapes_.end() ? nullptr : &found->second;
+}
+
+const ReentryLight* ObjectShapes::reentry_of(std::uint32_t catalogue_number) const {
+  const auto found = reentries_.find(catalogue_number);
+  return found == reentries_.end() ? nullptr : &found->second;
 }
 
 Renderer& ObjectShapes::renderer() const {

@@ -51,8 +51,8 @@ std::vector<LightSource> secondary_light_on(const View& view, const Vec<Gcrs>& p
                                             const Rotation<Body, Gcrs>& body_from_gcrs,
                                             int rings = earthshine_flux_rings);
 
-/// The objects of a scenario that have a shape, for one sensor. The renderer is loaded when the
-/// first of them is near enough to show it.
+/// The objects of a scenario that have a shape or light of their own, for one sensor. The renderer
+/// is loaded when the first of them is near enough to show it.
 class ObjectShapes {
  public:
   /// `models`: of objects of catalogues.
@@ -67,6 +67,8 @@ class ObjectShapes {
   /// Shape of an object of the scenario's own.
   const ObjectShape* of(std::uint32_t catalogue_number) const;
   const ObjectModels& models() const { return models_; }
+  /// Light of an object of the scenario's own as it burns; null: it does not.
+  const ReentryLight* reentry_of(std::uint32_t catalogue_number) const;
 
   /// Throws `Error` where there is no OpenGL.
   Renderer& renderer() const;
@@ -77,8 +79,9 @@ class ObjectShapes {
   double sun_photons() const { return sun_photons_; }
 
  private:
-  std::map<std::uint32_t, ObjectShape> shapes_;  // for the scenario's own objects
-  std::set<std::uint32_t> own_;                  // their numbers, also of those without a shape
+  std::map<std::uint32_t, ObjectShape> shapes_;      // for the scenario's own objects
+  std::set<std::uint32_t> own_;                      // their numbers, also of those without a shape
+  std::map<std::uint32_t, ReentryLight> reentries_;  // without a shape
   ObjectModels models_;
   std::map<const ObjectModel*, ObjectShape> of_models_;
   mutable std::unique_ptr<Renderer> renderer_;

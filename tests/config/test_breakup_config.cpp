@@ -110,7 +110,7 @@ TEST(BreakupConfig, SaysWhereAndWhy) {
                                          ": objects[0].breakup.size: unknown key");
   const std::string one = "- {breakup: {" + blast + "}}\n";
   EXPECT_EQ(complaint_of_broken(one + one),
-            "s.yaml:3:3: objects[1]: another constellation or breakup has the name breakup");
+            "s.yaml:3:3: objects[1]: another constellation, breakup or population has the name breakup");
 }
 
 TEST(BreakupConfig, EveryChangeShowsInThePhysicsDigest) {

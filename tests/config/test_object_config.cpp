@@ -157,12 +157,25 @@ TEST(ObjectConfig, ObjectsWithoutANumberGetOneInOrder) {
   EXPECT_EQ(own[2].catalogue_number, 990000003u);
 }
 
+TEST(ObjectConfig, LightOfAReentryIsByHeight) {
+  const std::string object = "- {name: x, motion: {fixed: {gcrs_m: [1e7, 0, 0]}}, reentry: ";
+  const auto light =
+      read(object + "{height_m: [5.0e+4, 9.0e+4], magnitude: [-3, 2.5]}}").own[0].reentry;
+  EXPECT_EQ(light, (ReentryLight{{5e4, 9e4}, {-3, 2.5}, 100e3}));
+  EXPECT_EQ(
+      complaint(object + "{height_m: [9.0e+4, 9.0e+4], magnitude: [-3, 2.5]}}"),
+      "s.yaml:2:82: objects[0].reentry.height_m[1]: must be above the one before, got 9.0e+4");
+  EXPECT_EQ(complaint(object + "{height_m: [5.0e+4, 9.0e+4], magnitude: [-3, 2, 1]}}"),
+            "s.yaml:2:102: objects[0].reentry.magnitude: must have one for each height");
+}
+
 TEST(ObjectConfig, SaysWhereAndWhy) {
   const std::string fixed = "motion: {fixed: {gcrs_m: [1e7, 0, 0]}}";
   EXPECT_EQ(complaint("- {name: x}"), "s.yaml:2:3: objects[0].motion: is missing");
-  EXPECT_EQ(complaint("- {radius_m: 2}"),
-            "s.yaml:2:3: objects[0]: needs a catalogue, a walker, a train, a breakup, or a name "
-            "and a motion");
+  EXPECT_EQ(
+      complaint("- {radius_m: 2}"),
+      "s.yaml:2:3: objects[0]: needs a catalogue, a walker, a train, a breakup, a population, "
+      "or a name and a motion");
   EXPECT_EQ(complaint("- {name: x, " + fixed + ", albdo: 1}"),
             "s.yaml:2:53: objects[0].albdo: unknown key, did you mean albedo?");
   EXPECT_EQ(complaint("- {name: x, motion: {flying: {}}}"),

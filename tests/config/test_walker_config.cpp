@@ -1,4 +1,4 @@
-#include "core/config/objects/walker_config.h"
+#include "core/config/objects/generators/walker_config.h"
 
 #include <gtest/gtest.h>
 
@@ -106,8 +106,9 @@ TEST(WalkerConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("- {train: {}, walker: {}}"),
             "s.yaml:2:11: objects[0].train: goes without walker");
   const std::string one = "- {walker: {" + keys + ", total: 6}}\n";
-  EXPECT_EQ(complaint(one + one),
-            "s.yaml:3:3: objects[1]: another constellation or breakup has the name walker");
+  EXPECT_EQ(
+      complaint(one + one),
+      "s.yaml:3:3: objects[1]: another constellation, breakup or population has the name walker");
   const std::string name(49, 'n');
   EXPECT_EQ(complaint("- {walker: {" + keys + ", total: 6}, name: " + name + "}"),
             "s.yaml:2:82: objects[0].name: must have 1 to 48 characters, got " + name);

@@ -76,6 +76,22 @@ TEST_F(ObjectPopulationTest, AConstellationIsASourceLikeACatalogue) {
             "walker-1-1 (give it the number 990000002 to take its place)");
 }
 
+TEST_F(ObjectPopulationTest, DebrisAreSpheresOfTheirOwnSize) {
+  const auto p = population(
+      "  - {population: {min_size_m: 0.05, max_size_m: 0.2, scale: 0.01}, name: d, albedo: 0.3}\n");
+  ASSERT_GT(p.elements.size(), 100u);
+  const auto& first = p.roster.objects.front();
+  EXPECT_EQ(first.catalogue_number, first_own_number);
+  EXPECT_NEAR(first.sphere.albedo, 0.3, 1e-12);
+  EXPECT_GT(first.sphere.radius_m, 0.05);
+  EXPECT_LE(first.sphere.radius_m, 0.1);
+  EXPECT_GE(p.roster.objects.back().sphere.radius_m, 0.025);
+  EXPECT_LT(p.roster.objects.back().sphere.radius_m, 0.03);
+  // Chance may make none.
+  EXPECT_TRUE(
+      population("  - {population: {min_size_m: 0.0999, scale: 1.0e-9}}\n").elements.empty());
+}
+
 TEST_F(ObjectPopulationTest, FragmentsAreSpheresOfTheirOwnSize) {
   const auto p = population(
       "  - {breakup: {parent: mother, kind: explosion, mass_kg: 900, least_length_m: 0.1}, name: "

@@ -113,6 +113,28 @@ TEST_F(RunRecords, FragmentsAreObjectsWithElements) {
   EXPECT_EQ(refusal(), "run.json: scenario: objects: event: a breakup has 1 to 100000 fragments");
 }
 
+TEST_F(RunRecords, DebrisOfAPopulationAreObjectsWithElements) {
+  const auto record = [](const std::string& min_size_m) {
+    std::string inclinations = "4";
+    for (int degree = 1; degree < 180; ++degree) inclinations += degree == 98 ? ",6" : ",0";
+    return R"({"status":"complete","seed":7,"scenario":{"sensors":[],"objects":[
+{"population":"p","first_number":990000001,"debris":[2020,130,0.01,)" +
+           min_size_m + R"(,0.1,700000,900000,2458138.5,0.75],"inclinations":[)" + inclinations +
+           R"(],"radius_m":1,"albedo":0.175,"only":[]}]}})";
+  };
+  write(record("0.05"));
+  const RunRecord run = *read_run_record(directory);
+  EXPECT_TRUE(run.catalogues.empty());
+  ASSERT_GT(run.own_objects.size(), 10u);
+  EXPECT_EQ(run.own_objects[5].catalogue_number, 990000006u);
+  EXPECT_EQ(run.own_objects[5].elements->name.substr(0, 2), "p-");
+  EXPECT_EQ(run.own_objects[5].elements->epoch_jd2, 0.75);
+  write(record("1e-9"));
+  EXPECT_EQ(refusal(),
+            "run.json: scenario: objects: debris: a population has up to 1000000 objects within a "
+            "shell");
+}
+
 TEST_F(RunRecords, RefusesANameThatLeavesTheDirectory) {
   write(R"({"status":"complete","scenario":{"sensors":[{"name":"../../etc"}]}})");
   EXPECT_EQ(refusal(),

@@ -6,7 +6,9 @@
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/config/objects/breakup_config.h"
-#include "core/config/objects/walker_config.h"
+#include "core/config/objects/generators/population_config.h"
+#include "core/config/objects/generators/walker_config.h"
+#include "core/config/objects/reentry_config.h"
 #include "core/config/yaml/bound_key.h"
 #include "core/config/yaml/search_path.h"
 #include "core/config/yaml/yaml_reader.h"
@@ -70,6 +72,19 @@ const Section& fragments_section() {
   return section;
 }
 
+const Section& debris_section() {
+  static const Section section{
+      "debris",
+      "Debris that no catalogue has, by its flux.",
+      {required("population", form::map(population_section), "Sizes, heights and number."),
+       optional("name", form::text(),
+                "Unique, of 1 to 48 characters; the objects are NAME-NUMBER, the largest first.",
+                "population"),
+       optional("albedo", form::above(0.0, 1.0), "Albedo of the spheres that they are.",
+                shortest_text(fragment_albedo))}};
+  return section;
+}
+
 const Section& own_section() {
   static const Section section{
       "object", "An object of the scenario's own.",
@@ -84,6 +99,8 @@ const Section& own_section() {
            optional("panel", form::map(panel_section),
                     "The panel of its geometry that faces the Sun."),
            optional("geometry", form::map(geometry_section), "Its shape; needs an attitude."),
+           optional("reentry", form::map(reentry_section),
+                    "Light of its own by height, as it burns in the air; without a geometry."),
            optional("model", form::text(),
                     "A shipped model (`dmise list models`) or a file of one, in place of geometry "
                     "and panel. Its attitude holds unless the object has one.")},
@@ -97,7 +114,7 @@ DiffuseSphere read_sphere(YamlMap& map) {
   return sphere;
 }
 
-ObjectSource read_object_source(const YamlValue& value) {
+ObjectSource read_object_source(const YamlValue& value, const Utc&) {
   YamlMap map(value, source_section());
   ObjectSource source;
   const auto catalogue = map.require("catalogue");
@@ -143,6 +160,21 @@ ObjectSource read_fragments(const YamlValue& value, const Utc& start) {
   source.named = name ? printable(name->text()) : "breakup";
   check_name(source, name);
   source.breakup->name = source.named;
+  source.sphere.albedo = map.number("albedo");
+  map.done();
+  return source;
+}
+
+ObjectSource read_debris(const YamlValue& value, const Utc& start) {
+  YamlMap map(value, debris_section());
+  ObjectSource source;
+  const auto population = map.require("population");
+  const auto name = map.find("name");
+  source.where = population.place();
+  source.population = read_population(population, start);
+  source.named = name ? printable(name->text()) : "population";
+  check_name(source, name);
+  source.population->name = source.named;
   source.sphere.albedo = map.number("albedo");
   map.done();
   return source;
@@ -197,6 +229,10 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
     object.catalogue_number = static_cast<std::uint32_t>(number->integer());
   object.motion = read_motion(map.require("motion"), start, object.name, earth);
   read_appearance(map, object);
+  if (const auto reentry = map.find("reentry")) {
+    if (object.geometry) reentry->fail("goes without a shape", false);
+    object.reentry = read_reentry(*reentry);
+  }
   object.sphere = read_sphere(map);
   map.done();
   if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))
@@ -227,7 +263,8 @@ bool have_glints(const std::vector<ObjectSource>& catalogues, const std::vector<
 
 Forms objects_forms() {
   return form::list(form::map(source_section) | form::map(constellation_section) |
-                    form::map(fragments_section) | form::map(own_section));
+                    form::map(fragments_section) | form::map(debris_section) |
+                    form::map(own_section));
 }
 
 namespace {
@@ -241,17 +278,33 @@ void assign_numbers(ObjectsConfig& objects, std::set<std::uint32_t>& taken) {
       if (taken.insert(next++).second) object.catalogue_number = next - 1;
   if (!taken.empty()) next = std::max(first_own_number, *taken.rbegin() + 1);
   for (auto& source : objects.catalogues) {
-    if (source.path.empty()) {
-      std::uint32_t& first =
-          source.walker ? source.walker->first_number : source.breakup->first_number;
-      first = next;
-      next += std::uint32_t(source.walker ? source.walker->satellites()
-                                          : source.breakup->fragment_count());
-    }
+    const auto number = [&](auto& made, int count) {
+      made.first_number = next;
+      next += std::uint32_t(count);
+    };
+    if (source.walker) number(*source.walker, source.walker->satellites());
+    if (source.breakup) number(*source.breakup, source.breakup->fragment_count());
+    if (source.population) number(*source.population, source.population->numbers());
     if (next > greatest_number)
       throw ConfigError(source.where + ": no catalogue numbers are left for its " +
-                        (source.walker ? "satellites" : "fragments"));
+                        (source.walker    ? "satellites"
+                         : source.breakup ? "fragments"
+                                          : "objects"));
   }
+}
+
+using ReadSource = ObjectSource (*)(const YamlValue&, const Utc&);
+
+/// The reader of an entry that states many objects; null: it states one.
+ReadSource kind_of_source(YamlMap& map) {
+  static constexpr std::pair<const char*, ReadSource> kinds[] = {{"walker", read_constellation},
+                                                                 {"train", read_constellation},
+                                                                 {"breakup", read_fragments},
+                                                                 {"population", read_debris},
+                                                                 {"catalogue", read_object_source}};
+  for (const auto& [key, read] : kinds)
+    if (map.find(key)) return read;
+  return nullptr;
 }
 
 /// Parents of breakups, which may be listed after them.
@@ -260,9 +313,7 @@ void read_parents(const YamlValue& list, const Utc& start, const EarthConfig& ea
   std::size_t next = 0;
   for (const auto& entry : list.list()) {
     YamlMap map(entry);
-    const bool is_own =
-        !(map.find("catalogue") || map.find("walker") || map.find("train") || map.find("breakup"));
-    if (is_own) continue;
+    if (!kind_of_source(map)) continue;
     ObjectSource& source = objects.catalogues[next++];
     if (source.breakup) read_parent(map.require("breakup"), start, earth, objects, *source.breakup);
   }
@@ -276,22 +327,21 @@ ObjectsConfig read_objects(const YamlValue& value, const Utc& start, const Earth
   std::set<std::uint32_t> numbers;
   for (const auto& entry : value.list()) {
     YamlMap map(entry);
-    const bool is_constellation = map.find("walker") || map.find("train");
-    const bool is_breakup = !is_constellation && map.find("breakup");
-    if (is_constellation || is_breakup || map.find("catalogue")) {
+    if (const ReadSource read = kind_of_source(map)) {
       const bool stated = !models_of(objects.catalogues).empty();
-      objects.catalogues.push_back(is_constellation ? read_constellation(entry, start)
-                                   : is_breakup     ? read_fragments(entry, start)
-                                                    : read_object_source(entry));
+      objects.catalogues.push_back(read(entry, start));
       const ObjectSource& source = objects.catalogues.back();
       if (stated && !source.models.empty())
         map.require("models").fail("another catalogue states models, which are of all", false);
       if (source.path.empty() && !constellations.insert(source.named).second)
-        entry.fail("another constellation or breakup has the name " + source.named, false);
+        entry.fail("another constellation, breakup or population has the name " + source.named,
+                   false);
       continue;
     }
     if (!map.find("name") && !map.find("motion"))
-      entry.fail("needs a catalogue, a walker, a train, a breakup, or a name and a motion", false);
+      entry.fail(
+          "needs a catalogue, a walker, a train, a breakup, a population, or a name and a motion",
+          false);
     objects.own.push_back(read_own_object(entry, start, earth));
     const OwnObject& object = objects.own.back();
     if (!names.insert(object.name).second) map.require("name").fail("another object has this name");

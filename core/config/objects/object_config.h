@@ -11,8 +11,10 @@
 #include "core/config/objects/panel_config.h"
 #include "core/config/yaml/section.h"
 #include "core/orbit/breakup/breakup.h"
+#include "core/orbit/debris/debris_population.h"
 #include "core/orbit/sgp4/walker.h"
 #include "core/photometry/diffuse_sphere.h"
+#include "core/photometry/reentry_light.h"
 #include "core/time/julian_date.h"
 
 namespace dmise {
@@ -20,13 +22,14 @@ namespace dmise {
 class YamlValue;
 
 /// A catalogue of element sets, `{catalogue: demo}`, a constellation, `{walker: {..}}` or `{train:
-/// {..}}`, or the pieces of an object, `{breakup: {..}}`.
+/// {..}}`, the pieces of an object, `{breakup: {..}}`, or debris, `{population: {..}}`.
 struct ObjectSource {
-  std::string path;                     // resolved; empty for those that are made
-  std::string named;                    // as in the scenario: "demo" or a path; its name
-  std::optional<Walker> walker;         // the constellation
-  std::optional<Breakup> breakup;       // whose pieces they are; `sphere` has their albedo
-  DiffuseSphere sphere;                 // for objects of which no facts are known
+  std::string path;                            // resolved; empty for those that are made
+  std::string named;                           // as in the scenario: "demo" or a path; its name
+  std::optional<Walker> walker;                // the constellation
+  std::optional<Breakup> breakup;              // whose pieces they are; `sphere` has their albedo
+  std::optional<DebrisPopulation> population;  // whose objects they are, likewise
+  DiffuseSphere sphere;                        // for objects of which no facts are known
   std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
   std::string where;                    // `file:line:column: objects[0].catalogue`, for messages
@@ -45,7 +48,8 @@ struct OwnObject {
   std::optional<GeometryConfig> geometry;
   DiffuseSphere sphere;         // without a geometry
   std::string model_path = {};  // the model that gave attitude, panel and geometry; may be empty
-  std::optional<Glints> glints = {};  // taken from that model
+  std::optional<Glints> glints = {};         // taken from that model
+  std::optional<ReentryLight> reentry = {};  // without a geometry
 };
 
 /// How a node of the user's moves or turns an object; null: none does.
@@ -58,8 +62,8 @@ inline const NodeAttitude* attitude_by_node(const OwnObject& object) {
 }
 
 /// First catalogue number assigned to objects without one, in the scenario's order, and then to
-/// satellites of constellations and fragments: products identify objects by number, and catalogues
-/// stay below.
+/// satellites of constellations, fragments and debris: products identify objects by number, and
+/// catalogues stay below.
 inline constexpr std::uint32_t first_own_number = 990'000'001;
 
 /// The models of the scenario's objects of catalogues: those of the catalogue that states them.

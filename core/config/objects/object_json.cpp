@@ -112,6 +112,14 @@ void write_breakup(JsonWriter& json, const Breakup& b) {
   json.list("teme", {b.epoch.jd1, b.epoch.jd2, r.x, r.y, r.z, v.x, v.y, v.z});
 }
 
+void write_population(JsonWriter& json, const DebrisPopulation& p) {
+  json.field("population", p.name).field("first_number", p.first_number);
+  json.list("debris", {p.year, p.solar_flux_sfu, p.scale, p.min_size_m, p.max_size_m,
+                       p.min_height_m, p.max_height_m, p.epoch.jd1, p.epoch.jd2});
+  json.list("inclinations", p.inclinations);
+  if (p.seed) json.field("seed", *p.seed);
+}
+
 void write_own(JsonWriter& json, const OwnObject& object) {
   json.begin_object().field("name", object.name);
   json.field("catalogue_number", object.catalogue_number);
@@ -127,6 +135,11 @@ void write_own(JsonWriter& json, const OwnObject& object) {
   if (object.geometry) json.field("geometry", object.geometry->digest);
   if (object.panel) write_panel(json, *object.panel, object.geometry.has_value());
   if (object.glints) write_glints(json, *object.glints);
+  if (object.reentry) {
+    json.list("reentry_height_m", object.reentry->height_m);
+    json.list("reentry_magnitude", object.reentry->v_mag);
+    json.field("reentry_range_m", object.reentry->range_m);
+  }
   json.end_object();
 }
 
@@ -141,6 +154,8 @@ void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues
       write_walker(json, *source.walker);
     else if (source.breakup)
       write_breakup(json, *source.breakup);
+    else if (source.population)
+      write_population(json, *source.population);
     else
       json.field("catalogue", source.named);
     json.field("radius_m", source.sphere.radius_m).field("albedo", source.sphere.albedo);

@@ -25,7 +25,7 @@ class Scenario(TypedDict, total=False):
 
     simulation: Required[Simulation]
     """The run."""
-    objects: Sequence[Catalogue | Constellation | Fragments | Object]
+    objects: Sequence[Catalogue | Constellation | Fragments | Debris | Object]
     """Catalogues of objects, and objects of one's own."""
     nodes: Sequence[Node]
     """Programs of one's own that take part in the run: they move objects, detect in the frames of sensors, are sensors, or
@@ -442,6 +442,42 @@ class Approach(TypedDict, total=False):
     """When it begins, since the start of the run [s]. Default: 0."""
 
 
+class Debris(TypedDict, total=False):
+    """Debris that no catalogue has, by its flux."""
+
+    population: Required[Population]
+    """Sizes, heights and number."""
+    name: Text
+    """Unique, of 1 to 48 characters; the objects are NAME-NUMBER, the largest first. Default: population."""
+    albedo: float
+    """Albedo of the spheres that they are. Default: 0.175."""
+
+
+class Population(TypedDict, total=False):
+    """Debris in low orbits, as many as NASA's engineering model has (Kessler et al. 1989, SSP 30425)."""
+
+    min_size_m: Required[float]
+    """Diameter of the smallest objects [m]."""
+    max_size_m: float
+    """Diameter of the largest objects [m]: a catalogue has those beyond. Default: 0.1."""
+    min_height_m: float
+    """Least semi-major axis less 6378137 m [m]. Default: 2e+05."""
+    max_height_m: float
+    """Greatest semi-major axis less 6378137 m [m]. Default: 2e+06."""
+    inclinations: Text
+    """`demo`, or a file of element sets, of which the objects at these heights give the distribution of inclinations.
+    Default: demo."""
+    year: float
+    """Year of the flux, with its fraction: the model has growth from 1988 on. Default: that of the start of the run."""
+    solar_flux_sfu: float
+    """The Sun's flux at 10.7 cm, over the year before [10^-22 W/m^2/Hz]: 70 at its minimum, 200 at its maximum. Drag removes
+    low objects where it is high. Default: 130."""
+    scale: float
+    """Factor of the number. Default: 1."""
+    seed: int
+    """Seed of the objects. Default: that of the scenario."""
+
+
 class Object(TypedDict, total=False):
     """An object of the scenario's own."""
 
@@ -457,6 +493,8 @@ class Object(TypedDict, total=False):
     """The panel of its geometry that faces the Sun."""
     geometry: Geometry
     """Its shape; needs an attitude."""
+    reentry: Reentry
+    """Light of its own by height, as it burns in the air; without a geometry."""
     model: Text
     """A shipped model (`dmise list models`) or a file of one, in place of geometry and panel. Its attitude holds unless the
     object has one."""
@@ -569,6 +607,17 @@ class Geometry(TypedDict, total=False):
     """Material of the side of the body of a box-wing that faces z, the Earth in nadir attitude. Default: that of the body."""
     chassis: Text
     """Material of the chassis of a starlink-like satellite. Default: starlink-v1.5-chassis."""
+
+
+class Reentry(TypedDict, total=False):
+    """The light of an object that burns in the air, beside the Sun's."""
+
+    height_m: Required[Sequence[float]]
+    """Heights over the ellipsoid, ascending [m]. Above and below them there is no light."""
+    magnitude: Required[Sequence[float]]
+    """V magnitude at each height, seen from `range_m`; linear between them."""
+    range_m: float
+    """Distance from which the magnitudes are [m]. Default: 1e+05."""
 
 
 class Node(TypedDict, total=False):

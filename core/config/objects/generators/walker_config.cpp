@@ -1,4 +1,4 @@
-#include "core/config/objects/walker_config.h"
+#include "core/config/objects/generators/walker_config.h"
 
 #include "core/base/units.h"
 #include "core/config/yaml/yaml_reader.h"
