@@ -55,9 +55,9 @@ bool move_ends(const Scene& scene, StreakLight& light, Source& source) {
 std::optional<MeasuredCurve> light_curve_of(const Scene& scene, Source& source) {
   auto light = streak_light(scene, source);
   if (!light) return std::nullopt;
-  auto period = light_period(*light);
-  if (period && source.flashes == 0) {
-    if (move_ends(scene, *light, source)) period = light_period(*light);
+  FoundPeriod found = light_period(*light);
+  if (found.period && source.flashes == 0) {
+    if (move_ends(scene, *light, source)) found = light_period(*light);
     set_light(*light, source);
   }
   const BinnedLight bins = binned(*light);
@@ -81,11 +81,10 @@ std::optional<MeasuredCurve> light_curve_of(const Scene& scene, Source& source) 
   }
   if (curve.along_px.empty()) return std::nullopt;
   curve.correlation.back() = 0.0;
-  if (period) {
-    curve.period = period->period;
-    out.dark_first_px = period->dark_first_px;
-    out.dark_last_px = period->dark_last_px;
-  }
+  curve.period = found.period;
+  curve.min_period_px = found.min_period_px;
+  out.dark_first_px = found.dark_first_px;
+  out.dark_last_px = found.dark_last_px;
   return out;
 }
 
