@@ -34,7 +34,7 @@ COUNTS = (1, 2, 3, 5, 10, 20)  # flashes of a streak
 SNR_BINS = (5, 8, 13, 20, 30.1)
 MAX_PULL = 5.0  # of one streak in a mean of squares
 DOCUMENT = referee.SOURCE / "docs/detection.md"
-TABLE_SEED, TABLE_FRAMES = 12000, 60
+TABLE_SEED, TABLE_FRAMES = 13000, 60
 
 
 def light(kind, cycles, phase, depth, duty, share):

@@ -13,6 +13,8 @@
 namespace dmise {
 namespace {
 
+constexpr double min_growth = 1.1;  // a line that grows so has its period measured anew
+
 /// Adds the error of an end that was moved [px^2]: of length and middle.
 void add_end_error(Source& source, double variance_px2) {
   if (!(source.free & trail_length)) return;
@@ -57,7 +59,14 @@ std::optional<MeasuredCurve> light_curve_of(const Scene& scene, Source& source) 
   if (!light) return std::nullopt;
   FoundPeriod found = light_period(*light);
   if (found.period && source.flashes == 0) {
-    if (move_ends(scene, *light, source)) found = light_period(*light);
+    const double before_px = light->length_px;
+    if (move_ends(scene, *light, source)) {
+      FoundPeriod longer = light_period(*light);
+      found.dark_first_px = longer.dark_first_px;
+      found.dark_last_px = longer.dark_last_px;
+      // A little light beyond an end says little, and may be the wings of a flash beside it.
+      if (longer.period && light->length_px > min_growth * before_px) found = longer;
+    }
     set_light(*light, source);
   }
   const BinnedLight bins = binned(*light);

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t searched_harmonics = 16, max_harmonics = 40;
 constexpr double steps = 4.0;  // frequency steps for a cycle more of the highest harmonic
 constexpr std::size_t max_peaks = 8;
-constexpr double share_uneven = 0.02;            // of the light's gain in chi2 that need not repeat
+constexpr double share_uneven = 0.02;            // share of the gain in chi2 that need not repeat
 const double min_over_free = std::log(30.0);     // evidence over that of light that does not repeat
 const double min_over_longer = std::log(100.0);  // by which a shorter period is ruled out
 constexpr int phases = 720;  // places in a period at which its light is looked at
@@ -64,15 +64,13 @@ class PeriodSearch {
     return 1 / highest;
   }
 
-  double full_evidence(double frequency, double misfit) const {
-    return log_evidence(equations(frequency, max_harmonics), all_wave_priors(), line_.even_e(),
-                        misfit);
-  }
-  LightEquations equations(double frequency, std::size_t most) const {
-    return line_.harmonics(frequency, line_.harmonics_at(frequency, most));
+  /// With as many harmonics as another frequency has.
+  double full_evidence(double frequency, double as_at, double misfit) const {
+    return log_evidence(line_.harmonics(frequency, max_harmonics, as_at), all_wave_priors(),
+                        line_.even_e(), misfit);
   }
   WaveFit fit(double frequency) const {
-    return best_fit(equations(frequency, max_harmonics), line_.even_e(), misfit_);
+    return best_fit(line_.harmonics(frequency, max_harmonics, frequency), line_.even_e(), misfit_);
   }
   /// By which squares of errors exceed those of noise, if light repeats so.
   double misfit_of(const LightFit& fit) const {
@@ -84,20 +82,20 @@ class PeriodSearch {
     const auto most = std::max(line_.harmonics_at(frequency, searched_harmonics), one);
     return 1 / (steps * double(most) * length_px_);
   }
-  /// Of the range of frequencies that are tried for a period.
+  /// Logarithm of the range of frequencies that are tried for a period.
   double log_range() const { return std::log(line_.highest_frequency() * length_px_); }
 
  private:
   static constexpr std::size_t one = 1;
 
-  double quick_evidence(double frequency) const {
-    return log_evidence(equations(frequency, searched_harmonics), few_wave_priors(), line_.even_e(),
-                        searched_misfit_);
+  double quick_evidence(double frequency, double as_at) const {
+    return log_evidence(line_.harmonics(frequency, searched_harmonics, as_at), few_wave_priors(),
+                        line_.even_e(), searched_misfit_);
   }
   /// From twice the line on, where nothing repeats.
   void scan() {
     for (double f = 0.5 / length_px_; f <= line_.highest_frequency(); f += frequency_step(f))
-      scanned_.push_back({f, quick_evidence(f)});
+      scanned_.push_back({f, quick_evidence(f, f)});
   }
   void find_peaks() {
     for (std::size_t i = 1; i + 1 < scanned_.size(); ++i)
@@ -116,9 +114,9 @@ class PeriodSearch {
   /// The best frequency within a step, with all harmonics and priors.
   Peak refined(const Peak& peak) const {
     const double step = frequency_step(peak.frequency);
-    const Least least = golden_section([&](double f) { return -quick_evidence(f); },
+    const Least least = golden_section([&](double f) { return -quick_evidence(f, peak.frequency); },
                                        peak.frequency - step, peak.frequency + step, 1e-3 * step);
-    return {least.at, full_evidence(least.at, searched_misfit_)};
+    return {least.at, full_evidence(least.at, least.at, searched_misfit_)};
   }
 
   const LineEquations& line_;
@@ -147,7 +145,7 @@ std::optional<FrequencyEstimate> estimate(const PeriodSearch& search, double fre
     const double step = (out.frequency + reach - first) / (points - 1);
     for (std::size_t i = 0; i < points; ++i) {
       at[i] = first + double(i) * step;
-      log[i] = search.full_evidence(at[i], misfit);
+      log[i] = search.full_evidence(at[i], frequency, misfit);
     }
     const double most = *std::ranges::max_element(log);
     double sum = 0.0, mean = 0.0, square = 0.0;
@@ -293,7 +291,8 @@ std::optional<FoundPeriod> period_at(const Peak& peak, const PeriodSearch& searc
   const double misfit = search.misfit_of(search.fit(peak.frequency).light);
   const auto frequency = estimate(search, peak.frequency, misfit);
   if (!frequency || !(frequency->sigma < 0.2 * frequency->frequency)) return std::nullopt;
-  const LightEquations equations = search.equations(frequency->frequency, max_harmonics);
+  const LightEquations equations =
+      line.harmonics(frequency->frequency, max_harmonics, peak.frequency);
   const WaveFit fit = best_fit(equations, line.even_e(), misfit);
   const std::vector<double> values = fit.light.values_e();
   const EvenLight even = even_light_of(line, equations, values);

@@ -10,7 +10,7 @@ namespace dmise {
 /// known.
 struct FoundPeriod {
   std::optional<LightPeriod> period;
-  // Of light that varies without showing its period: shorter ones do not explain it.
+  // The shortest that explains light that varies without showing its period.
   std::optional<double> min_period_px;
   // How far beyond either end the periodic light stays dark: so much of the line may be unseen.
   double dark_first_px = 0.0, dark_last_px = 0.0;

@@ -10,7 +10,7 @@ namespace dmise {
 namespace {
 
 constexpr double shortest_fwhms = 1.75;  // shortest wave: the PSF leaves 0.3 of it
-constexpr double max_cycles = 160.0;     // of the shortest wave on the line: bounds the time
+constexpr double max_cycles = 160.0;  // the shortest wave has so many on the line: bounds the time
 
 }  // namespace
 
@@ -97,7 +97,8 @@ LightEquations LineEquations::beside_others(const std::vector<Column>& columns) 
   return out;
 }
 
-LightEquations LineEquations::harmonics(double frequency, std::size_t count) const {
+LightEquations LineEquations::harmonics(double frequency, std::size_t most, double as_at) const {
+  const std::size_t count = harmonics_at(as_at, most);
   std::vector<Column> waves;
   for (std::size_t h = 1; h <= count; ++h) {
     // Steps from piece to piece: the amplitude of a wave through them is less by a sinc.
@@ -107,7 +108,7 @@ LightEquations LineEquations::harmonics(double frequency, std::size_t count) con
     waves.push_back(along_line([&](double px) { return height * std::sin(turn * px); }));
   }
   LightEquations out = beside_others(waves);
-  out.harmonics_shown = highest_frequency() / frequency;
+  out.harmonics_shown = highest_frequency() / as_at;
   return out;
 }
 

@@ -28,13 +28,14 @@ class LineEquations {
   double even_e() const { return value_[even_light]; }
   double even_variance_e2() const;
 
-  /// Of the shortest wave that the PSF leaves [1/px].
+  /// Frequency of the shortest wave that the PSF leaves [1/px].
   double highest_frequency() const;
   /// Up to `most` of them.
   std::size_t harmonics_at(double frequency, std::size_t most) const;
-  /// Of cosine and sine of each harmonic.
-  LightEquations harmonics(double frequency, std::size_t count) const;
-  /// Of each bin between the ends.
+  /// Equations of cosine and sine of each harmonic, up to `most`: as many as the PSF leaves `as_at`
+  /// a frequency. One more of them would shift the frequency.
+  LightEquations harmonics(double frequency, std::size_t most, double as_at) const;
+  /// Equations of each bin between the ends.
   LightEquations bins() const;
 
  private:
@@ -61,9 +62,9 @@ class LineEquations {
 
   const StreakLight& light_;
   std::vector<Column> others_;
-  BandedMatrix factor_;  // of their equations
+  BandedMatrix factor_;  // the factor of their equations
   bool solvable_ = false;
-  std::vector<double> value_;  // of the others alone
+  std::vector<double> value_;  // light of the others alone
 };
 
 }  // namespace dmise

@@ -41,13 +41,13 @@ std::span<const WavePrior> few_wave_priors() { return few_priors; }
 std::vector<double> WavePrior::sigmas_e(std::size_t harmonics_fitted, double harmonics_shown,
                                         double even_e) const {
   constexpr double folds = 14.0;       // by which the power of those left out has fallen
-  constexpr double falls_over = 0.25;  // of the harmonics shown
+  constexpr double falls_over = 0.25;  // share of the harmonics shown
   const std::size_t kept = std::min(harmonics_fitted, std::size_t(std::ceil(folds * harmonics)));
   std::vector<double> power;
-  double all = 0.0;
+  double all = 1e-300;
   for (std::size_t h = 1; h <= kept; ++h) {
     const double left = (harmonics_shown - double(h)) / (falls_over * harmonics_shown);
-    power.push_back(std::exp(-double(h) / harmonics) * std::clamp(left, 1e-6, 1.0));
+    power.push_back(std::exp(-double(h) / harmonics) * std::clamp(left, 0.0, 1.0));
     all += power.back();
   }
   std::vector<double> out;

@@ -54,7 +54,7 @@ struct WaveFit {
   LightFit light;
 };
 WaveFit best_fit(const LightEquations& harmonics, double even_e, double misfit);
-/// Of light that is independent in all bins.
+/// The fit of light that is independent in all bins.
 LightFit free_fit(const LightEquations& bins, double even_e, double misfit);
 
 }  // namespace dmise
