@@ -362,6 +362,8 @@ void describe_light(const Source& source, MeasuredCurve measured, const FrameHea
     const double y_px = d.end1_y_px + share * (d.end2_y_px - d.end1_y_px);
     curve.time_s.push_back(share * header.exposure_s + row_delay(header, y_px).seconds());
   }
+  const double moving_s = std::max((d.end2_time - d.end1_time).seconds(), 0.0);
+  if (curve.min_period_px) curve.min_period_s = *curve.min_period_px / length_px * moving_s;
   if (!curve.period) return;
   LightPeriod& period = *curve.period;
   // The exposure's ends are anywhere in the dark beyond those of the light.
@@ -370,8 +372,7 @@ void describe_light(const Source& source, MeasuredCurve measured, const FrameHea
   // The fit of even light misses either end of uneven light by about half a FWHM, a bin.
   const double variance_px2 = length_variance_px2(source) + curve.bin_px * curve.bin_px / 2 +
                               (first_px * first_px + last_px * last_px) / 12;
-  const double moving_s = (d.end2_time - d.end1_time).seconds();
-  period.period_s = period.period_px / whole_px * std::max(moving_s, 0.0);
+  period.period_s = period.period_px / whole_px * moving_s;
   period.period_sigma_s = period.period_s * std::hypot(period.period_sigma_px / period.period_px,
                                                        std::sqrt(variance_px2) / whole_px);
 }

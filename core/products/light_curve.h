@@ -8,6 +8,7 @@
 namespace dmise {
 
 /// A period in the light of a streak, found by harmonics of it in the light along the line.
+/// Errors are one sigma if the light repeats.
 struct LightPeriod {
   double period_px = 0.0, period_sigma_px = 0.0;  // along the line
   // By the time that the object takes from end to end. The ends are known less well than the light
@@ -16,7 +17,8 @@ struct LightPeriod {
   // Half the difference between the most and the least light in a period, over the mean light.
   double amplitude = 0.0, amplitude_sigma = 0.0;
   std::uint32_t harmonics = 0;
-  double false_alarm = 0.0;  // probability that noise on even light has a period as significant
+  // Upper bound of the probability that noise on even light has a period as significant.
+  double false_alarm = 0.0;
 
   bool operator==(const LightPeriod&) const = default;
 };
@@ -33,6 +35,9 @@ struct LightCurve {
   // Between the errors of a bin and of the next one: the PSF blurs the light of one over both.
   std::vector<double> correlation;
   std::optional<LightPeriod> period;  // where one is significant
+  // Where the light varies without showing its period: shorter ones are a hundred times less
+  // likely than the best.
+  std::optional<double> min_period_px, min_period_s;
 
   bool operator==(const LightCurve&) const = default;
 };
@@ -58,6 +63,8 @@ void visit_fields(V& v, L& light) {
   v("sigma_e", light.sigma_e);
   v("correlation", light.correlation);
   v("period", light.period);
+  v("min_period_px", light.min_period_px);
+  v("min_period_s", light.min_period_s);
 }
 
 }  // namespace dmise

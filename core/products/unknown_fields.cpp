@@ -51,7 +51,8 @@ bool of_time(std::string_view key, const UnknownFacts& unknown) {
   const bool is_start = key.starts_with("start_");
   if (key.ends_with("_utc"))
     return lacks(unknown, {time}) || (lacks(unknown, {exposure}) && !is_start);
-  constexpr std::string_view of_light_curve[] = {"time_s", "period_s", "period_sigma_s"};
+  constexpr std::string_view of_light_curve[] = {"time_s", "period_s", "period_sigma_s",
+                                                 "min_period_s"};
   const bool of_exposure =
       key.ends_with("_ns") || std::ranges::find(of_light_curve, key) != std::end(of_light_curve);
   return lacks(unknown, {exposure}) && of_exposure && !is_start;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/algebra/least_squares.h"
+#include "core/base/algebra/small_matrix.h"
 #include "core/base/error.h"
 #include "core/base/numeric/quantile.h"
 #include "core/base/units.h"
@@ -21,10 +21,13 @@ constexpr std::size_t min_votes = 5;
 constexpr std::size_t min_for_affine = 12;
 constexpr double min_over_chance = 1.2;
 constexpr double outlier_scatters = 3.5, min_reach_px = 0.3;
+constexpr double max_outlier_chi2 = 14.0;  // 2 degrees of freedom: 1 in 1000 by chance
+constexpr double star_error_px = 0.02;     // of any star, by its shape and that of pixels
 
 struct Pair {
   PixelPosition from, to;
   double ratio;  // light in the frame over that in the reference
+  Symmetric2 covariance_px2;
 };
 
 double distance_px(PixelPosition a, PixelPosition b) {
@@ -56,6 +59,16 @@ std::pair<PixelPosition, std::size_t> common_shift(const std::vector<PixelPositi
   return best;
 }
 
+/// Error of the way from one star to the other.
+Symmetric2 covariance_of(const PlateSource& from, const PlateSource& to) {
+  Symmetric2 out;
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = from.covariance_px2[k] + to.covariance_px2[k];
+  out[0] += 2 * star_error_px * star_error_px;
+  out[2] += 2 * star_error_px * star_error_px;
+  return out;
+}
+
 /// Pairs of stars within reach of each other; each star is in one.
 std::vector<Pair> pairs_within(const LinearMap& map, const std::vector<PixelPosition>& expected,
                                const FilteredSequence& sequence, std::size_t frame,
@@ -73,7 +86,8 @@ std::vector<Pair> pairs_within(const LinearMap& map, const std::vector<PixelPosi
     const PixelPosition to{star.x_px, star.y_px};
     const auto known = best.find(b);
     if (known == best.end() || distance_px(at, to) < distance_px(map(known->second.from), to))
-      best[b] = {expected[a], to, star.flux / std::max(stars[a].flux, 1e-9)};
+      best[b] = {expected[a], to, star.flux / std::max(stars[a].flux, 1e-9),
+                 covariance_of(stars[a], star)};
   }
   std::vector<Pair> pairs;
   for (const auto& [b, pair] : best) pairs.push_back(pair);
@@ -86,19 +100,46 @@ PixelPosition mean_of(const std::vector<Pair>& pairs, PixelPosition Pair::*membe
   return sum * (1.0 / double(pairs.size()));
 }
 
-LinearMap fitted(const std::vector<Pair>& pairs) {
-  LinearMap map{.about = mean_of(pairs, &Pair::from), .shift = mean_of(pairs, &Pair::to)};
-  if (pairs.size() < min_for_affine) return map;
-  std::vector<double> a, b;
-  for (const Pair& pair : pairs) {
-    const PixelPosition d = pair.from - map.about;
-    a.insert(a.end(), {1.0, d.x_px, d.y_px});
-    b.insert(b.end(), {pair.to.x_px, pair.to.y_px});
+/// Derivatives of x and of y in a frame by the parameters of a map: both shifts, then the matrix.
+using PlaceBy = std::array<SmallVector, 2>;
+
+PlaceBy place_by(PixelPosition from_about) {
+  PlaceBy out{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    out[k][k] = 1.0;
+    out[k][2 + 2 * k] = from_about.x_px;
+    out[k][3 + 2 * k] = from_about.y_px;
   }
-  const auto x = least_squares(a, 3, b, 2);
-  map.shift = {x[0], x[1]};
-  map.matrix = {x[2], x[4], x[3], x[5]};
-  return map;
+  return out;
+}
+
+/// The map that has the least squares of ways over their errors.
+RegisteredMap fitted(const std::vector<Pair>& pairs) {
+  RegisteredMap out{
+      .map = {.about = mean_of(pairs, &Pair::from), .shift = mean_of(pairs, &Pair::to)},
+      .parameters = pairs.size() < min_for_affine ? std::size_t(2) : std::size_t(6),
+      .factor = {}};
+  NormalEquations equations;
+  for (const Pair& pair : pairs) {
+    const PlaceBy by = place_by(pair.from - out.map.about);
+    const PixelPosition way = pair.to - pair.from - (out.map.shift - out.map.about);
+    // Two numbers with independent errors of one sigma: W = L L', with the inverse covariance W.
+    const Symmetric2 w = inverse_of(pair.covariance_px2);
+    const double xx = std::sqrt(w[0]), xy = w[1] / xx, yy = std::sqrt(w[2] - xy * xy);
+    SmallVector first{}, second{};
+    for (std::size_t i = 0; i < out.parameters; ++i) {
+      first[i] = xx * by[0][i] + xy * by[1][i];
+      second[i] = yy * by[1][i];
+    }
+    equations.add(1.0, first, xx * way.x_px + xy * way.y_px);
+    equations.add(1.0, second, yy * way.y_px);
+  }
+  if (!cholesky(equations.matrix, out.parameters)) return out;
+  out.factor = equations.matrix;
+  const SmallVector x = solve(out.factor, equations.right, out.parameters);
+  out.map.shift = out.map.shift + PixelPosition{x[0], x[1]};
+  out.map.matrix = {1 + x[2], x[3], x[4], 1 + x[5]};
+  return out;
 }
 
 double scatter_px(const LinearMap& map, const std::vector<Pair>& pairs) {
@@ -107,8 +148,23 @@ double scatter_px(const LinearMap& map, const std::vector<Pair>& pairs) {
   return off.empty() ? 0.0 : median_of(off) / 1.1774;  // a Rayleigh distribution has this median
 }
 
+/// Without pairs that are farther apart than their errors and the scatter of others allow.
+std::vector<Pair> without_outliers(const LinearMap& map, const std::vector<Pair>& pairs) {
+  constexpr double median_chi2 = 1.386;  // of two degrees of freedom
+  std::vector<double> chi2;
+  for (const Pair& pair : pairs) {
+    const PixelPosition off = pair.to - map(pair.from);
+    chi2.push_back(mahalanobis2(pair.covariance_px2, off.x_px, off.y_px));
+  }
+  const double most = max_outlier_chi2 * std::max(median_of(chi2) / median_chi2, 1.0);
+  std::vector<Pair> kept;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (chi2[i] < most) kept.push_back(pairs[i]);
+  return kept;
+}
+
 struct StarMatch {
-  LinearMap map;
+  RegisteredMap map;
   std::vector<Pair> pairs;  // empty: there is no match
 };
 
@@ -124,15 +180,19 @@ StarMatch match_stars(const std::vector<PixelPosition>& expected, const Filtered
                       std::size_t frame) {
   const auto& seen = sequence.frames[frame].stars;
   const auto [shift, votes] = common_shift(expected, seen);
-  StarMatch match{.map = {.about = {}, .shift = shift}, .pairs = {}};
+  StarMatch match{.map = {.map = {.about = {}, .shift = shift}}, .pairs = {}};
   if (votes < min_votes) return match;
   for (double reach_px : {6.0, 3.0, 1.5, 1.0, 0.0}) {
     if (reach_px == 0.0)
-      reach_px = std::max(outlier_scatters * scatter_px(match.map, match.pairs), min_reach_px);
-    match.pairs = pairs_within(match.map, expected, sequence, frame, reach_px);
+      reach_px = std::max(outlier_scatters * scatter_px(match.map.map, match.pairs), min_reach_px);
+    match.pairs = pairs_within(match.map.map, expected, sequence, frame, reach_px);
     const double by_chance = chance_pairs(expected.size(), seen.size(), sequence, reach_px);
     if (double(match.pairs.size()) < double(min_votes) + min_over_chance * by_chance)
       return {.map = {}, .pairs = {}};
+    match.map = fitted(match.pairs);
+  }
+  for (int round = 0; round < 2; ++round) {
+    match.pairs = without_outliers(match.map.map, match.pairs);
     match.map = fitted(match.pairs);
   }
   return match;
@@ -177,7 +237,7 @@ void Registration::fit(const FilteredSequence& sequence, std::size_t frame,
   }
   std::vector<double> ratios;
   for (const Pair& pair : match.pairs) ratios.push_back(pair.ratio);
-  maps_[frame] = {match.map, match.map.inverse(), median_of(ratios)};
+  maps_[frame] = {match.map, match.map.map.inverse(), median_of(ratios)};
 }
 
 PixelPosition Registration::expected(std::size_t frame, PixelPosition reference) const {
@@ -187,7 +247,7 @@ PixelPosition Registration::expected(std::size_t frame, PixelPosition reference)
 }
 
 PixelPosition Registration::in_frame(std::size_t frame, PixelPosition reference) const {
-  return maps_[frame].by_stars(expected(frame, reference));
+  return maps_[frame].by_stars.map(expected(frame, reference));
 }
 
 PixelPosition Registration::in_reference(std::size_t frame, PixelPosition place) const {
@@ -195,6 +255,20 @@ PixelPosition Registration::in_reference(std::size_t frame, PixelPosition place)
   if (wcs_.empty() || frame == reference_) return at;
   const auto pixel = wcs_pixel(*wcs_[reference_], wcs_direction(*wcs_[frame], at));
   return pixel ? *pixel : PixelPosition{nowhere_px, nowhere_px};
+}
+
+Symmetric2 Registration::error_px2(std::size_t frame, PixelPosition reference) const {
+  const RegisteredMap& stars = maps_[frame].by_stars;
+  Symmetric2 out{};
+  if (stars.parameters == 0) return out;
+  const PlaceBy by = place_by(expected(frame, reference) - stars.map.about);
+  const auto product = [&](const SmallVector& a, const SmallVector& b) {
+    const SmallVector spread = solve(stars.factor, b, stars.parameters);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < stars.parameters; ++i) sum += a[i] * spread[i];
+    return sum;
+  };
+  return {product(by[0], by[0]), product(by[0], by[1]), product(by[1], by[1])};
 }
 
 LinearMap Registration::around(std::size_t from, std::size_t to, PixelPosition place,

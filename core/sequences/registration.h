@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/algebra/small_matrix.h"
+#include "core/base/algebra/symmetric2.h"
 #include "core/base/pixel.h"
 #include "core/sequences/filtered_sequence.h"
 #include "core/wcs/wcs.h"
@@ -22,6 +24,13 @@ struct LinearMap {
   LinearMap inverse() const;
 };
 
+/// A map by stars and its error.
+struct RegisteredMap {
+  LinearMap map;
+  std::size_t parameters = 0;  // that were fitted: both shifts, then the matrix
+  SmallMatrix factor{};        // Cholesky's, of their information
+};
+
 /// Where the sky of a pixel of the reference frame is in the other frames, and back, by the frames'
 /// world coordinates, if all have them, and by the stars that they share.
 class Registration {
@@ -32,6 +41,9 @@ class Registration {
   /// Far outside of any frame where there is none.
   PixelPosition in_frame(std::size_t frame, PixelPosition reference) const;
   PixelPosition in_reference(std::size_t frame, PixelPosition place) const;
+  /// Covariance of a place in a frame, for one that is known in the reference frame: half of it is
+  /// by the stars of each. 0 for the reference frame.
+  Symmetric2 error_px2(std::size_t frame, PixelPosition reference) const;
   /// The map from frame to frame around a place.
   LinearMap around(std::size_t from, std::size_t to, PixelPosition place, double reach_px) const;
   /// Light of stars in a frame over that in the reference frame.
@@ -41,7 +53,8 @@ class Registration {
 
  private:
   struct Map {
-    LinearMap by_stars, back;  // from where world coordinates expect a place, to where it is
+    RegisteredMap by_stars;  // from where world coordinates expect a place, to where it is
+    LinearMap back;
     double transmission = 1.0;
   };
   PixelPosition expected(std::size_t frame, PixelPosition reference) const;

@@ -15,7 +15,7 @@ constexpr int max_steps = 20, first_steps = 5;  // before frames that disagree a
 constexpr double max_displaced_chi2 = 14.0;     // 2 degrees of freedom: 1 in 1000 by chance
 constexpr double max_step_px = 0.7, converged_px = 1e-3;
 constexpr double max_way_widths = 3.0;     // from the start of a fit to its end, FWHM
-constexpr double place_error_px = 0.02;    // in each frame: registration, shape of pixels
+constexpr double place_error_px = 0.02;    // in each frame, by the shape of pixels
 constexpr double shown_snr = 6.0;          // from which on a frame's own place is measured
 constexpr double linear_px = 8.0;          // over which a map between frames is measured
 constexpr double neglected_orders = 25.0;  // growth of the covariance, over the square of the SNR
@@ -31,7 +31,8 @@ struct Response {
 struct FrameView {
   std::size_t frame;
   double time_s, noise_e;
-  LinearMap map;  // from the reference frame
+  LinearMap map;             // from the reference frame
+  Symmetric2 map_error_px2;  // by the stars of the frame and by those of the reference frame
   Response response;
   bool used = true;
 };
@@ -77,6 +78,7 @@ std::vector<FrameView> views_of(const TrackScene& scene, const SkyMotion& start)
          .time_s = frame.time_s,
          .noise_e = noise_e,
          .map = map,
+         .map_error_px2 = scene.registration.error_px2(i, start.at(frame.time_s)),
          .response = {curvature_of(frame.psf, at, sequence.sigma_px, trail), 1 / (2 * s2)}});
   }
   return views;
@@ -122,8 +124,8 @@ std::vector<SnrAt> seen_by(const std::vector<MovingLight>& light,
   return seen;
 }
 
-/// Turns a symmetric matrix from the axes of a frame to those of the reference frame.
-Symmetric2 in_reference(const Symmetric2& m, const std::array<double, 4>& a) {
+/// a' m a: turns a symmetric matrix from the axes of a frame to those of the reference frame.
+Symmetric2 turned(const Symmetric2& m, const std::array<double, 4>& a) {
   const double xx = m[0] * a[0] + m[1] * a[2], xy = m[0] * a[1] + m[1] * a[3],
                yx = m[1] * a[0] + m[2] * a[2], yy = m[1] * a[1] + m[2] * a[3];
   return {a[0] * xx + a[2] * yx, a[0] * xy + a[2] * yy, a[1] * xy + a[3] * yy};
@@ -153,10 +155,24 @@ struct Equations {
 Symmetric2 slope_noise(const FrameView& view, double snr, double sigma_px) {
   const double own = 4 * std::max(snr, 0.0) / (9 * std::sqrt(pi) * sigma_px * view.noise_e);
   const double sky = view.response.slope_variance * (1 + own);
-  const Symmetric2& c = view.response.curvature;
-  const double off2 = std::pow(snr * place_error_px, 2);
-  return {sky + off2 * (c[0] * c[0] + c[1] * c[1]), off2 * c[1] * (c[0] + c[2]),
-          sky + off2 * (c[1] * c[1] + c[2] * c[2])};
+  const Symmetric2 &c = view.response.curvature, &map = view.map_error_px2;
+  const double pixels = place_error_px * place_error_px;
+  const Symmetric2 off =
+      turned({map[0] / 2 + pixels, map[1] / 2, map[2] / 2 + pixels}, {c[0], c[1], c[1], c[2]});
+  return {sky + snr * snr * off[0], snr * snr * off[1], sky + snr * snr * off[2]};
+}
+
+/// Error of a track's place by the stars of the reference frame, which all other frames share.
+Symmetric2 common_error_px2(const std::vector<FrameView>& views) {
+  Symmetric2 sum{};
+  double count = 0.0;
+  for (const FrameView& view : views) {
+    if (!view.used) continue;
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += view.map_error_px2[k] / 2;
+    count += 1;
+  }
+  for (double& v : sum) v /= count;
+  return sum;
 }
 
 /// Leaves out frames that show the source beside the track by more than noise does, as on a star or
@@ -181,10 +197,10 @@ Equations equations_of(const std::vector<FrameView>& views, const std::vector<Sn
     const SnrAt& at = seen[k];
     if (!view.used || !(at.weight > 0)) continue;
     const double w2 = at.weight * at.weight, expected = amplitude_e * at.weight;
-    add_at(out.information, in_reference(view.response.curvature, view.map.matrix), view.time_s,
+    add_at(out.information, turned(view.response.curvature, view.map.matrix), view.time_s,
            w2 * amplitude_e);
-    add_at(out.noise, in_reference(slope_noise(view, expected, sigma_px), view.map.matrix),
-           view.time_s, w2);
+    add_at(out.noise, turned(slope_noise(view, expected, sigma_px), view.map.matrix), view.time_s,
+           w2);
     const auto& a = view.map.matrix;
     const double gx = a[0] * at.slope.x_px + a[2] * at.slope.y_px,
                  gy = a[1] * at.slope.x_px + a[3] * at.slope.y_px;
@@ -253,7 +269,7 @@ void measure(const MovingLight& light, const FrameView& view, double sigma_px, T
   point.measured = place;
   const Symmetric2 noise = slope_noise(view, point.snr, sigma_px);
   // The inverse is symmetric: inverse * noise * inverse, over the square of the SNR.
-  point.covariance_px2 = in_reference(noise, {inverse[0], inverse[1], inverse[1], inverse[2]});
+  point.covariance_px2 = turned(noise, {inverse[0], inverse[1], inverse[1], inverse[2]});
   for (double& v : point.covariance_px2) v /= point.snr * point.snr;
 }
 
@@ -334,6 +350,9 @@ std::optional<MovingTrack> fit_track(const TrackScene& scene, const SkyMotion& s
   track.covariance = covariance_of(equations.information, equations.noise);
   for (auto& row : track.covariance)
     for (double& v : row) v *= 1 + neglected_orders / (track.snr * track.snr);
+  const Symmetric2 common = common_error_px2(views);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) track.covariance[i][j] += common[i + j];
   if (track.used() < min_sequence_frames) return std::nullopt;
   return track;
 }

@@ -212,6 +212,8 @@ void check(const LightCurve& light) {
   }
   for (const double sigma : light.sigma_e) not_negative(sigma, "light_curve.sigma_e");
   for (const double c : light.correlation) in_range(c, -1, 1, "light_curve.correlation");
+  not_negative(light.min_period_px.value_or(0.0), "light_curve.min_period_px");
+  not_negative(light.min_period_s.value_or(0.0), "light_curve.min_period_s");
   if (light.period) check(*light.period);
 }
 

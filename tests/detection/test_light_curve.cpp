@@ -122,20 +122,53 @@ TEST(LightCurve, HasThePeriodOfASineInAnyDirection) {
     }
 }
 
-// One flash repeats nothing; two show their distance.
+double flash(double share, double at) {
+  return 4 * std::exp(-0.5 * std::pow((share - at) / 0.03, 2));
+}
+
+// One flash repeats nothing: a shorter period than the way to the farther end would show another.
+TEST(LightCurve, OfOneFlashRulesShorterPeriodsOut) {
+  for (const double at : {0.25, 0.45, 0.8}) {
+    const auto found = detections_of(
+        160, 0.4, [&](double u) { return 0.6 + flash(u, at); }, 1);
+    ASSERT_EQ(found.size(), 1u);
+    const LightCurve& curve = found[0].light_curve.value();
+    EXPECT_FALSE(curve.period);
+    ASSERT_TRUE(curve.min_period_px) << at;
+    const double way_px = 160 * std::max(at, 1 - at);
+    EXPECT_LT(*curve.min_period_px, way_px + 15) << at;  // the flash is 11 px long
+    EXPECT_GT(*curve.min_period_px, way_px - 15) << at;
+    EXPECT_NEAR(*curve.min_period_s, *curve.min_period_px / 160 * exposure_s, 0.5);
+  }
+}
+
 TEST(LightCurve, HasAPeriodFromTwoFlashesOn) {
-  const auto flash = [](double share, double at) {
-    return 4 * std::exp(-0.5 * std::pow((share - at) / 0.03, 2));
-  };
-  const auto one = detections_of(
-      160, 0.4, [&](double u) { return 0.6 + flash(u, 0.45); }, 1);
-  ASSERT_EQ(one.size(), 1u);
-  EXPECT_FALSE(one[0].light_curve.value().period);
   const auto two = detections_of(
       160, 0.4, [&](double u) { return 0.6 + flash(u, 0.2) + flash(u, 0.8); }, 2);
   ASSERT_EQ(two.size(), 1u);
   ASSERT_TRUE(two[0].light_curve.value().period);
   EXPECT_NEAR(two[0].light_curve->period->period_px, 0.6 * 160, 0.01 * 0.6 * 160);
+  EXPECT_FALSE(two[0].light_curve->min_period_px);
+}
+
+// The errors that are stated of one to two periods are those made.
+TEST(LightCurve, StatesTheErrorsOfFewPeriods) {
+  double squares = 0.0, of_amplitude = 0.0;
+  int count = 0;
+  for (unsigned seed = 200; seed < 224; ++seed) {
+    const double cycles = 1.2 + 0.05 * (seed - 200);
+    const auto found = detections_of(
+        160, 0.25 * seed, [&](double u) { return sine(cycles, u + 0.1 * seed); }, seed);
+    const auto& curve = found.at(0).light_curve;
+    if (!curve || !curve->period) continue;
+    const LightPeriod& p = *curve->period;
+    squares += std::pow((p.period_px - 160 / cycles) / p.period_sigma_px, 2);
+    of_amplitude += std::pow((p.amplitude - 0.6) / p.amplitude_sigma, 2);
+    ++count;
+  }
+  ASSERT_GE(count, 16);
+  EXPECT_NEAR(squares / count, 1.0, 4 * std::sqrt(2.0 / count));
+  EXPECT_NEAR(of_amplitude / count, 1.0, 4 * std::sqrt(2.0 / count));
 }
 
 // Times are those of the ends, also behind a rolling shutter, and run from end 1 to end 2.

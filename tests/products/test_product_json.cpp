@@ -64,7 +64,9 @@ Detection streak_with_light() {
                                                    .amplitude = 0.75,
                                                    .amplitude_sigma = 0.0625,
                                                    .harmonics = 3,
-                                                   .false_alarm = 1e-9}};
+                                                   .false_alarm = 1e-9},
+                             .min_period_px = 7.5,
+                             .min_period_s = 3};
   return d;
 }
 

@@ -211,7 +211,9 @@ Detection detection(Numbers& n, std::uint32_t index) {
                  .sigma_e = {n.in(1, 100), n.in(1, 100)},
                  .correlation = {n.in(-0.5, 0), n.in(-0.5, 0)},
                  .period = LightPeriod{n.in(10, 20), n.in(0, 1), n.in(1, 2), n.in(0, 0.1),
-                                       n.in(0, 1), n.in(0, 0.1), 3, n.in(0, 1e-3)}};
+                                       n.in(0, 1), n.in(0, 0.1), 3, n.in(0, 1e-3)},
+                 .min_period_px = n.in(10, 20),
+                 .min_period_s = n.in(1, 2)};
   d.range_m = n.in(1e5, 1e7), d.range_sigma_m = n.in(1, 100);
   d.range_rate_m_per_s = n.in(-8e3, 8e3), d.range_rate_sigma_m_per_s = n.in(0.1, 10);
   return d;

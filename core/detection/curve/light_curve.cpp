@@ -13,6 +13,8 @@
 namespace dmise {
 namespace {
 
+constexpr double min_growth = 1.1;  // a line that grows so has its period measured anew
+
 /// Adds the error of an end that was moved [px^2]: of length and middle.
 void add_end_error(Source& source, double variance_px2) {
   if (!(source.free & trail_length)) return;
@@ -55,9 +57,16 @@ bool move_ends(const Scene& scene, StreakLight& light, Source& source) {
 std::optional<MeasuredCurve> light_curve_of(const Scene& scene, Source& source) {
   auto light = streak_light(scene, source);
   if (!light) return std::nullopt;
-  auto period = light_period(*light);
-  if (period && source.flashes == 0) {
-    if (move_ends(scene, *light, source)) period = light_period(*light);
+  FoundPeriod found = light_period(*light);
+  if (found.period && source.flashes == 0) {
+    const double before_px = light->length_px;
+    if (move_ends(scene, *light, source)) {
+      FoundPeriod longer = light_period(*light);
+      found.dark_first_px = longer.dark_first_px;
+      found.dark_last_px = longer.dark_last_px;
+      // A little light beyond an end says little, and may be the wings of a flash beside it.
+      if (longer.period && light->length_px > min_growth * before_px) found = longer;
+    }
     set_light(*light, source);
   }
   const BinnedLight bins = binned(*light);
@@ -81,11 +90,10 @@ std::optional<MeasuredCurve> light_curve_of(const Scene& scene, Source& source) 
   }
   if (curve.along_px.empty()) return std::nullopt;
   curve.correlation.back() = 0.0;
-  if (period) {
-    curve.period = period->period;
-    out.dark_first_px = period->dark_first_px;
-    out.dark_last_px = period->dark_last_px;
-  }
+  curve.period = found.period;
+  curve.min_period_px = found.min_period_px;
+  out.dark_first_px = found.dark_first_px;
+  out.dark_last_px = found.dark_last_px;
   return out;
 }
 

@@ -6,9 +6,12 @@
 
 namespace dmise {
 
-/// A period of the light along a line.
+/// What the light along a line says of its period, in pixels: when the object was where is not yet
+/// known.
 struct FoundPeriod {
-  LightPeriod period;  // in pixels: when the object was where is not yet known
+  std::optional<LightPeriod> period;
+  // The shortest that explains light that varies without showing its period.
+  std::optional<double> min_period_px;
   // How far beyond either end the periodic light stays dark: so much of the line may be unseen.
   double dark_first_px = 0.0, dark_last_px = 0.0;
 };
@@ -16,13 +19,12 @@ struct FoundPeriod {
 /// Largest probability of a false alarm of a period that is stated.
 inline constexpr double max_false_alarm = 1e-3;
 
-/// Finds the period that explains the light of a streak better than even light that changes evenly
-/// along it: a generalised periodogram of harmonics (Schwarzenberg-Czerny 1996, ApJ 460, L107; with
-/// the constant and the slope fitted at each frequency as by Zechmeister & Kuerster 2009, A&A 496,
-/// 577), by least squares over the pixels, so that the blur of the PSF is part of the model. The
-/// number of harmonics and the period together have the best Bayesian information criterion. Empty
-/// if noise has one as good with more than `max_false_alarm` (Baluev 2009, MNRAS 395, 1541), or if
-/// fewer than two flashes or one whole sine are on the line, which show no period.
-std::optional<FoundPeriod> light_period(const StreakLight& light);
+/// Compares periods of the light of a streak by their evidence: the probability of its pixels, over
+/// that by even light with a slope, where harmonics of the period have any amplitudes of a normal
+/// prior. The blur of the PSF is part of the model. A period is stated if it explains the light
+/// better than noise, and than light that does not repeat, and if the line shows two flashes, two
+/// dips or a whole sine. Its error is the width of the evidence as a function of the period.
+/// Source: Bretthorst 1988, Bayesian Spectrum Analysis, chapter 6.
+FoundPeriod light_period(const StreakLight& light);
 
 }  // namespace dmise

@@ -14,7 +14,7 @@ constexpr double min_fwhms = 4.0;        // shortest line that is measured
 constexpr std::size_t max_pieces = 800;  // longer lines have longer pieces
 constexpr double reach_sigmas = 5.0;     // along the line, of the light of a piece
 constexpr double across_sigmas = 3.0, across_px = 1.0;
-constexpr double least_seen = 0.1;  // least weight of a measured bin, over the largest
+constexpr double least_seen = 0.3;  // share of the light of a bin that is measured
 constexpr double weak = 1e-6;       // the prior's weight over the largest: keeps equations solvable
 constexpr int passes = 3;           // each takes its weights from the light of the one before
 
@@ -146,11 +146,11 @@ SolvedBins solved_light(const StreakLight& light) {
   BinEquations equations = bin_equations(light);
   const std::size_t bins = equations.matrix.size();
   SolvedBins out{.factor = std::move(equations.matrix), .by_background = {}, .light = {}};
-  double most = 0.0;
-  for (std::size_t i = 0; i < bins; ++i) most = std::max(most, out.factor.at(i, i));
   std::vector<bool> is_measured;
-  for (std::size_t i = 0; i < bins; ++i)
-    is_measured.push_back(out.factor.at(i, i) > least_seen * most);
+  std::vector<double> seen(bins, 0.0);
+  for (std::size_t i = 0; i < light.seen.size(); ++i)
+    seen[bin_of(light, i)] += light.seen[i] / (is_beyond(light, i) ? 1.0 : double(pieces_of_bin));
+  for (const double share : seen) is_measured.push_back(share > least_seen);
   if (!out.factor.factorise()) return out;
   out.by_background = out.factor.solve(equations.background);
   out.light.is_measured = std::move(is_measured);
@@ -227,7 +227,8 @@ StreakLight divided(const Trail& line, double sigma_px) {
           .pieces = pieces,
           .matrix = BandedMatrix(pieces + 2 * pieces_beyond, reach),
           .right = std::vector<double>(pieces + 2 * pieces_beyond, 0.0),
-          .background = std::vector<double>(pieces + 2 * pieces_beyond, 0.0)};
+          .background = std::vector<double>(pieces + 2 * pieces_beyond, 0.0),
+          .seen = std::vector<double>(pieces + 2 * pieces_beyond, 0.0)};
 }
 
 }  // namespace
@@ -245,6 +246,8 @@ std::optional<StreakLight> streak_light(const Scene& scene, const Source& source
   std::vector<FitPixel> places;
   for (const PiecePixel& at : pixels) places.push_back(at.pixel);
   std::vector<double> model_e = light_in(places, {&line, 1}, psf);
+  for (const PiecePixel& at : pixels)
+    for (std::size_t k = 0; k < at.share.size(); ++k) light.seen[at.first + k] += at.share[k];
   for (int pass = 0; pass < passes; ++pass) {
     set_equations(pixels, model_e, light);
     const BinnedLight bins = solved_light(light).light;

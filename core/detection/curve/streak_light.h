@@ -23,6 +23,7 @@ struct StreakLight {
   std::size_t pieces = 0;                 // on the line, an even number
   BandedMatrix matrix;                    // equations of all pieces, those beyond the ends too
   std::vector<double> right, background;  // products with the pixels, and with an even background
+  std::vector<double> seen;               // share of a piece's light in pixels that are used
   double background_weight = 0.0, background_right = 0.0;
   double reduced_chi2 = 0.0;  // by the pixels around the line
 

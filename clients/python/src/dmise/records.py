@@ -53,7 +53,7 @@ class LightPeriod(Record):
     amplitude: float = 0.0  # half of most less least light, over the mean light
     amplitude_sigma: float = 0.0
     harmonics: int = 0
-    false_alarm: float = 0.0  # probability
+    false_alarm: float = 0.0  # probability, at most
 
 
 @dataclass(eq=False)
@@ -66,6 +66,8 @@ class LightCurve(Record):
     sigma_e: Floats = field(default_factory=no_numbers)
     correlation: Floats = field(default_factory=no_numbers)  # between the errors of a bin and of the next one
     period: LightPeriod | None = None
+    min_period_px: float | None = None  # where the light varies without showing its period: shorter ones are ruled out
+    min_period_s: float | None = None
 
     @property
     def covariance_e2(self) -> Floats:
