@@ -27,6 +27,7 @@ _NAMES = {
     "errors": "EngineError InputError NoAnswer Refused RunFailed ScenarioError",
     "frame_images": "Frame Frames frames read_frame",
     "injection": "Injected inject",
+    "joint_period": "PossiblePeriod possible_periods",
     "message": "Message",
     "node": "Node Tick",
     "orbit_fit": "Orbit Triangulated fit_orbit triangulate",

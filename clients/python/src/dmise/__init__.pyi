@@ -5,6 +5,7 @@ from .errors import EngineError as EngineError, InputError as InputError, NoAnsw
 from .errors import RunFailed as RunFailed, ScenarioError as ScenarioError
 from .frame_images import Frame as Frame, Frames as Frames, frames as frames, read_frame as read_frame
 from .injection import Injected as Injected, inject as inject
+from .joint_period import PossiblePeriod as PossiblePeriod, possible_periods as possible_periods
 from .message import Message as Message
 from .node import Node as Node, Tick as Tick
 from .orbit_fit import Orbit as Orbit, Triangulated as Triangulated, fit_orbit as fit_orbit, triangulate as triangulate
