@@ -93,6 +93,16 @@ class JsonFieldWriter {
   void write(std::string_view key, const std::optional<T>& part, double) {
     if (part) object(key, *part);
   }
+  template <HasFields T>
+  void write(std::string_view key, const std::vector<T>& parts, double) {
+    json_.key(key).begin_array();
+    for (const T& part : parts) {
+      json_.begin_object();
+      visit_fields(*this, part);
+      json_.end_object();
+    }
+    json_.end_array();
+  }
   template <class T>
   void object(std::string_view key, const T& value) {
     json_.key(key).begin_object();
@@ -253,6 +263,13 @@ class JsonFieldReader {
     JsonFieldReader reader(object);
     visit_fields(reader, part.emplace());
     check(object, *part);
+  }
+  template <HasFields T>
+  void read(const char* key, std::vector<T>& parts, double) {
+    for (const JsonRecord& object : record_.objects(key)) {
+      JsonFieldReader reader(object);
+      visit_fields(reader, parts.emplace_back());
+    }
   }
   Projection projection_of(const char* key, std::size_t index) const {
     std::vector<double> coefficients;

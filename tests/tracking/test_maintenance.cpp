@@ -190,6 +190,31 @@ TEST(CatalogueObject, FindsAManoeuvreItsTimeAndSize) {
   EXPECT_LT(nees(*end, truth.at(truth.end())), 30);
 }
 
+// A change along the normal turns the plane about a line: half an orbit before or after, the
+// opposite change has the same effect on all that follows.
+TEST(CatalogueObject, TellsAllTimesAtWhichAManoeuvreMayHaveBeen) {
+  const VelocityChange change{sim_seconds(27 * hour_s), {0.0, 0.0, 0.4}};
+  const ArcPath truth = flown({change}, 1.7);
+  CatalogueObject object(forces(), believed_about(low_orbit(), 2));
+  for (const auto& pass : passes(truth, 3)) ASSERT_TRUE(object.take(pass));
+  ASSERT_EQ(object.manoeuvres().size(), 1u);
+  const FoundManoeuvre& found = object.manoeuvres().front();
+  ASSERT_FALSE(found.modes.empty());
+  double chances = 0, nearest = 1e9, off_sigmas = 1e9;
+  for (const ManoeuvreMode& mode : found.modes) {
+    chances += mode.chance;
+    const double off_s = std::fabs((mode.change.time - change.time).seconds());
+    const double d2 = off_s * off_s / (mode.time_sigma_s * mode.time_sigma_s);
+    if (d2 > nearest) continue;
+    nearest = d2;
+    off_sigmas = (mode.change.delta_v_m_per_s.z - 0.4) / std::sqrt(mode.covariance(2, 2));
+  }
+  EXPECT_NEAR(chances, 1.0, 1e-12);
+  EXPECT_LT(nearest, 25.0);
+  EXPECT_LT(std::fabs(off_sigmas), 5.0);
+  EXPECT_LE(std::fabs((found.change.time - change.time).seconds()), 5 * found.time_sigma_s);
+}
+
 TEST(CatalogueObject, GoesOnWithinItsWindowForDays) {
   const ArcPath truth = flown({}, 2.9);
   CatalogueObject object(forces(), believed_about(low_orbit(), 3));
