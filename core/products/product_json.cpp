@@ -305,6 +305,7 @@ std::string to_json(const Truth& t, const UtcText& utc) { return line_of(t, utc)
 std::string to_json(const Track& t, const UtcText& utc) { return line_of(t, utc); }
 std::string to_json(const Task& t, const UtcText& utc) { return line_of(t, utc); }
 std::string to_json(const KeptOrbit& k, const UtcText& utc) { return line_of(k, utc); }
+std::string to_json(const FoundBreakup& b, const UtcText& utc) { return line_of(b, utc); }
 
 Detection detection_of(const JsonRecord& line) {
   const auto d = read_product<Detection>(line);
@@ -320,6 +321,7 @@ Truth truth_of(const JsonRecord& line) { return read_product<Truth>(line); }
 Track track_of(const JsonRecord& line) { return read_product<Track>(line); }
 Task task_of(const JsonRecord& line) { return read_product<Task>(line); }
 KeptOrbit kept_orbit_of(const JsonRecord& line) { return read_product<KeptOrbit>(line); }
+FoundBreakup found_breakup_of(const JsonRecord& line) { return read_product<FoundBreakup>(line); }
 
 Wcs wcs_of(const JsonRecord& object) {
   const auto wcs = read_product<Wcs>(object);
