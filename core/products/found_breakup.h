@@ -22,7 +22,7 @@ struct FoundBreakup {
   std::string parent;                  // number of the object that passed there; empty: none did
   std::string parent_name;             // may be empty
   std::vector<std::string> members;    // "new-N", as in KeptOrbit
-  double chi_square = 0.0;             // of their places about the point
+  double chi_square = 0.0;             // by their places about the point
   std::uint32_t degrees = 0;
   double confidence = 0.0;  // that neither chance nor another time explains it, [0, 1]
 

@@ -22,7 +22,7 @@ namespace dmise {
 namespace {
 
 constexpr double max_arc_s = 1800.0;  // as the fusion node ends arcs
-constexpr int gravity_degree = 4;     // of the paths
+constexpr int gravity_degree = 4;     // as the paths have it
 const OrbitVector prior_sigma =
     (OrbitVector() << 700, 700, 700, 0.5, 0.5, 0.5, 0, 0.003).finished();
 

@@ -16,7 +16,7 @@ namespace dmise {
 namespace {
 
 constexpr double day_s = 86400.0;
-constexpr int gravity_degree = 4;  // of the paths
+constexpr int gravity_degree = 4;  // as the paths have it
 
 OrbitEstimate read_estimate(std::istream& in) {
   double time_s = 0, sigma_m = 0, sigma_m_per_s = 0;

@@ -39,7 +39,7 @@ class CatalogueObject {
   Outcome<ArcNews> take(const std::vector<AngleObservation>& arc);
 
   SimTime time() const;                                // the last observation's, or the prior's
-  SimTime begin() const { return prior_.state.time; }  // of the window, before its observations
+  SimTime begin() const { return prior_.state.time; }  // when the window begins
   Outcome<OrbitEstimate> estimate_at(SimTime time) const;
   /// All manoeuvres so far, by the time at which they were found. The latest are estimated anew by
   /// each arc.

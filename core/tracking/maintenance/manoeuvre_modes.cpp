@@ -10,11 +10,11 @@ constexpr double coarse_s = 600.0;  // an orbit near the Earth has its peaks hal
 constexpr int refinements = 10;     // golden sections of two coarse steps: to 10 s
 constexpr std::size_t max_modes = 24;
 constexpr double min_chance = 1e-3;
-// Of the logarithm of a peak's evidence, below which no fit is tried: absolute, and a share of the
-// gain, since peaks far from a fit are known to first order only.
+// Fall of the logarithm of a peak's evidence, below which no fit is tried: absolute, and a share of
+// the gain, since peaks far from a fit are known to first order only.
 constexpr double peak_depth = 9.0, peak_depth_share = 0.003;
 constexpr double sum_depth = 9.0;   // at which a sum over a peak ends, in the logarithm
-constexpr double first_step = 0.4;  // of a sum, in deviations of the time
+constexpr double first_step = 0.4;  // in deviations of the time
 constexpr double min_step_s = 0.1;
 constexpr double step_growth = 1.3;
 constexpr int max_sum_steps = 60;

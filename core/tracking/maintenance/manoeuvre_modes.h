@@ -11,14 +11,14 @@ namespace dmise {
 struct ManoeuvreMode {
   VelocityChange change;
   double time_sigma_s = 0.0;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the change [m^2/s^2]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // errors of the change [m^2/s^2]
   double chance = 0.0;                                   // that the manoeuvre was then, [0, 1]
 };
 
 /// What is known of one manoeuvre.
 struct ManoeuvreModes {
   std::vector<ManoeuvreMode> modes = {};  // the likeliest first; their chances add up to 1
-  double gain = 0.0;                      // of the likeliest, to the sum of squares
+  double gain = 0.0;                      // by which the likeliest lowers the sum of squares
   std::size_t times = 0;                  // that were tried
 
   /// Standard deviation of the time about that of the first mode, over all.

@@ -11,7 +11,7 @@ struct ManoeuvreCandidate {
   VelocityChange change;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // at this time [m^2/s^2]
   double gain = 0.0;          // by which it would lower the sum of squares of the fit
-  double log_evidence = 0.0;  // of its time: the same scale in all fits of the observations
+  double log_evidence = 0.0;  // comparable among fits to the same observations
 };
 
 /// Candidates to first order: each is the best change at its time with all other unknowns fitted

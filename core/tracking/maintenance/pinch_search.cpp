@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 constexpr double grid_s = 60.0;
-constexpr long places_of_sigma = 60;  // of the grid, with one deviation
+constexpr long places_of_sigma = 60;  // neighbours with one deviation
 constexpr double chord_m = 100.0;     // by which differences of places are not linear in a step
 constexpr double pinch_gate = 4.0;
 constexpr double worst_fit = 3.5;  // normal deviate of chi-square, above which a member is dropped

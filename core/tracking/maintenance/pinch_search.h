@@ -12,17 +12,17 @@ struct PinchPoint {
   SimTime time;
   double time_sigma_s = 0.0;
   Vec<Gcrs> position_m;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of the place, at `time` [m^2]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // errors of the place, at `time` [m^2]
   Vec<Gcrs> velocity_m_per_s;                            // mean of the members'
   std::vector<std::size_t> members;                      // rising
-  double chi_square = 0.0;                               // of the members about one point
+  double chi_square = 0.0;                               // by the members' places about one point
   int degrees = 0;
   double confidence = 0.0;  // that neither chance nor another time explains it, [0, 1]
 };
 
 struct PinchSettings {
   double back_s = 86400.0;            // how long before an object was first seen
-  double max_sigma_m = 40e3;          // of a place; earlier ones are not looked at
+  double max_sigma_m = 40e3;          // where a place is known worse, nothing is looked at
   double max_apart_m_per_s = 1500.0;  // between two members
   double max_time_sigma_s = 600.0;    // objects that stay together have no such time
   std::size_t min_members = 3;
@@ -49,7 +49,7 @@ class PinchSearch {
     OrbitMatrix covariance;              // then
     long first = 0;                      // number of the earliest place in the grid of times
     std::vector<Vec<Gcrs>> places = {};  // every grid step from there
-    std::vector<double> sigmas = {};     // of each place [m]
+    std::vector<double> sigmas = {};     // deviation of each place [m]
   };
   struct Meeting {
     std::size_t other = 0;
