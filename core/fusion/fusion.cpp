@@ -43,8 +43,9 @@ Fusion::Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime 
       track_of_(catalogue_.size(), nullptr) {
   if (!settings.keep_orbits) return;
   const SimTime end{2 * reference.ns};
-  kept_ = std::make_unique<KeptOrbits>(clock, SimTime{} - sim_seconds(around_run_s),
-                                       end + sim_seconds(around_run_s));
+  const SimTime first = SimTime{} - sim_seconds(around_run_s);
+  kept_ = std::make_unique<KeptOrbits>(clock, first, end + sim_seconds(around_run_s));
+  pinches_ = std::make_unique<PinchSearch>(kept_->forces(), first);
 }
 
 FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
@@ -70,7 +71,7 @@ FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
   begin_unknown(loose);
   if (settings_.arc_exposures > 0) begin_from_arcs(loose);
   FusionTick out;
-  if (kept_) keep_arcs(time, out.orbits);
+  if (kept_) keep_arcs(time, out);
   age(time);
 
   for (const auto& track : tracks_) {

@@ -15,17 +15,20 @@
 #include "core/fusion/sensor_frame.h"
 #include "core/fusion/track_start.h"
 #include "core/orbit/elements/elements.h"
+#include "core/products/found_breakup.h"
 #include "core/products/track.h"
 #include "core/time/clock.h"
+#include "core/tracking/maintenance/pinch_search.h"
 
 namespace dmise {
 
 /// Result of one tick.
 struct FusionTick {
-  std::vector<Track> tracks;       // those that changed, by id
-  std::uint32_t live = 0;          // tracks that have not ended
-  std::uint32_t unassociated = 0;  // sources of the tick that no track took
-  std::vector<KeptOrbit> orbits;   // kept orbits that an arc changed, by track
+  std::vector<Track> tracks;           // those that changed, by id
+  std::uint32_t live = 0;              // tracks that have not ended
+  std::uint32_t unassociated = 0;      // sources of the tick that no track took
+  std::vector<KeptOrbit> orbits;       // kept orbits that an arc changed, by track
+  std::vector<FoundBreakup> breakups;  // that these show
 };
 
 /// Tracks of objects from the frames of all sensors: global nearest neighbours with gates, one
@@ -75,10 +78,14 @@ class Fusion {
 
   // fusion_keeping.cpp
   Outcome<OrbitEstimate> believed(std::size_t object, SimTime time) const;
-  void keep_arcs(SimTime time, std::vector<KeptOrbit>& orbits);
+  void keep_arcs(SimTime time, FusionTick& out);
   bool is_closed(const LiveTrack& track, SimTime time) const;
   std::optional<KeptOrbit> keep(LiveTrack& track);
   std::optional<std::size_t> owner_of(const LiveTrack& track, const OrbitState& seen);
+  /// Looks for a point from which an object in no catalogue came together with others.
+  std::optional<FoundBreakup> breakup_of(std::size_t object);
+  /// Names the catalogued object that passed a point, if one did.
+  void name_parent(const PinchPoint& point, FoundBreakup& breakup);
   void name_object(std::size_t object, std::uint32_t& catalogue_number, std::string& name) const;
 
   Clock clock_;
@@ -93,6 +100,8 @@ class Fusion {
   std::unique_ptr<KeptOrbits> kept_;                // null: none are kept
   // Objects beyond the catalogue, by the track with which each began.
   std::vector<std::uint32_t> new_objects_;
+  std::unique_ptr<PinchSearch> pinches_;            // null as kept_
+  std::vector<std::vector<std::size_t>> breakups_;  // members of those that are announced
   std::uint32_t next_id_ = 1;
 };
 

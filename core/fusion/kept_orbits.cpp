@@ -31,15 +31,24 @@ double sigma_of(const OrbitEstimate& estimate) {
   return std::sqrt(estimate.covariance.topLeftCorner<3, 3>().trace());
 }
 
+std::array<double, 3> numbers_of(const Vec<Rtn>& v) { return {v.x, v.y, v.z}; }
+
 std::optional<KeptManoeuvre> described(const std::optional<FoundManoeuvre>& found) {
   if (!found) return std::nullopt;
-  const Vec<Rtn>& v = found->change.delta_v_m_per_s;
-  return KeptManoeuvre{.time = found->change.time,
-                       .time_sigma_s = found->time_sigma_s,
-                       .delta_v_m_per_s = {v.x, v.y, v.z},
-                       .covariance = lower_triangle<3>(found->covariance),
-                       .found = found->found,
-                       .confidence = found->confidence};
+  KeptManoeuvre out{.time = found->change.time,
+                    .time_sigma_s = found->time_sigma_s,
+                    .delta_v_m_per_s = numbers_of(found->change.delta_v_m_per_s),
+                    .covariance = lower_triangle<3>(found->covariance),
+                    .modes = {},
+                    .found = found->found,
+                    .confidence = found->confidence};
+  for (const ManoeuvreMode& m : found->modes)
+    out.modes.push_back({.time = m.change.time,
+                         .time_sigma_s = m.time_sigma_s,
+                         .delta_v_m_per_s = numbers_of(m.change.delta_v_m_per_s),
+                         .covariance = lower_triangle<3>(m.covariance),
+                         .chance = m.chance});
+  return out;
 }
 
 }  // namespace

@@ -34,6 +34,13 @@ class KeptOrbits {
   /// decimetres a second.
   Outcome<OrbitEstimate> burnt(std::size_t object, SimTime time);
 
+  const MaintenanceForces& forces() const { return forces_; }
+  /// The estimate at the begin of an object's window: when it was first seen, for a day or more.
+  Outcome<OrbitEstimate> at_begin(std::size_t object) const {
+    const CatalogueObject& kept = objects_.at(object).object;
+    return kept.estimate_at(kept.begin());
+  }
+
   /// Takes an arc of detections, in any order. `prior`: what is believed of an object that is not
   /// kept yet, before the arc. Detections before the last that were taken are left out. Refuses an
   /// arc without others, and a prior without a path.

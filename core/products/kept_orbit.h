@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
@@ -10,7 +11,19 @@
 
 namespace dmise {
 
-/// A manoeuvre that the detections of an object show.
+/// Times at which a manoeuvre may have been that are apart from others.
+struct KeptManoeuvreMode {
+  SimTime time;
+  double time_sigma_s = 0.0;
+  std::array<double, 3> delta_v_m_per_s{};  // as in KeptManoeuvre
+  std::array<double, 6> covariance{};
+  double chance = 0.0;  // that the manoeuvre was then, [0, 1]
+
+  bool operator==(const KeptManoeuvreMode&) const = default;
+};
+
+/// A manoeuvre that the detections of an object show: its likeliest mode, with the spread of all
+/// about it.
 struct KeptManoeuvre {
   SimTime time;
   double time_sigma_s = 0.0;
@@ -18,8 +31,9 @@ struct KeptManoeuvre {
   // of its covariance by rows [m^2/s^2].
   std::array<double, 3> delta_v_m_per_s{};
   std::array<double, 6> covariance{};
-  SimTime found;            // the detection by which it was found
-  double confidence = 0.0;  // probability that noise would not have shown it, [0, 1]
+  std::vector<KeptManoeuvreMode> modes;  // by falling chance
+  SimTime found;                         // the detection by which it was found
+  double confidence = 0.0;               // probability that noise would not have shown it, [0, 1]
 
   bool operator==(const KeptManoeuvre&) const = default;
 };
@@ -49,6 +63,15 @@ struct KeptOrbit {
   bool operator==(const KeptOrbit&) const = default;
 };
 
+template <class V, MaybeConst<KeptManoeuvreMode> M>
+void visit_fields(V& v, M& m) {
+  v("time", m.time);
+  v("time_sigma_s", m.time_sigma_s);
+  v("delta_v_m_per_s", m.delta_v_m_per_s, "delta_v_rtn_m_per_s");
+  v("covariance", m.covariance, "covariance_rtn");
+  v("chance", m.chance);
+}
+
 template <class V, MaybeConst<KeptManoeuvre> M>
 void visit_fields(V& v, M& m) {
   v("time", m.time);
@@ -57,6 +80,7 @@ void visit_fields(V& v, M& m) {
   v("covariance", m.covariance, "covariance_rtn");
   v("found", m.found);
   v("confidence", m.confidence);
+  v.absent_unless(m.modes.size() > 1, "modes", m.modes);
 }
 
 template <class V, MaybeConst<KeptOrbit> K>

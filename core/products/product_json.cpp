@@ -93,6 +93,16 @@ class JsonFieldWriter {
   void write(std::string_view key, const std::optional<T>& part, double) {
     if (part) object(key, *part);
   }
+  template <HasFields T>
+  void write(std::string_view key, const std::vector<T>& parts, double) {
+    json_.key(key).begin_array();
+    for (const T& part : parts) {
+      json_.begin_object();
+      visit_fields(*this, part);
+      json_.end_object();
+    }
+    json_.end_array();
+  }
   template <class T>
   void object(std::string_view key, const T& value) {
     json_.key(key).begin_object();
@@ -254,6 +264,13 @@ class JsonFieldReader {
     visit_fields(reader, part.emplace());
     check(object, *part);
   }
+  template <HasFields T>
+  void read(const char* key, std::vector<T>& parts, double) {
+    for (const JsonRecord& object : record_.objects(key)) {
+      JsonFieldReader reader(object);
+      visit_fields(reader, parts.emplace_back());
+    }
+  }
   Projection projection_of(const char* key, std::size_t index) const {
     std::vector<double> coefficients;
     for (const ProjectionCoefficient& c : Projection::rows()[index].coefficients)
@@ -288,6 +305,7 @@ std::string to_json(const Truth& t, const UtcText& utc) { return line_of(t, utc)
 std::string to_json(const Track& t, const UtcText& utc) { return line_of(t, utc); }
 std::string to_json(const Task& t, const UtcText& utc) { return line_of(t, utc); }
 std::string to_json(const KeptOrbit& k, const UtcText& utc) { return line_of(k, utc); }
+std::string to_json(const FoundBreakup& b, const UtcText& utc) { return line_of(b, utc); }
 
 Detection detection_of(const JsonRecord& line) {
   const auto d = read_product<Detection>(line);
@@ -303,6 +321,7 @@ Truth truth_of(const JsonRecord& line) { return read_product<Truth>(line); }
 Track track_of(const JsonRecord& line) { return read_product<Track>(line); }
 Task task_of(const JsonRecord& line) { return read_product<Task>(line); }
 KeptOrbit kept_orbit_of(const JsonRecord& line) { return read_product<KeptOrbit>(line); }
+FoundBreakup found_breakup_of(const JsonRecord& line) { return read_product<FoundBreakup>(line); }
 
 Wcs wcs_of(const JsonRecord& object) {
   const auto wcs = read_product<Wcs>(object);

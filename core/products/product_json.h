@@ -4,6 +4,7 @@
 
 #include "core/base/files/json_record.h"
 #include "core/products/detection.h"
+#include "core/products/found_breakup.h"
 #include "core/products/frame_report.h"
 #include "core/products/kept_orbit.h"
 #include "core/products/task.h"
@@ -29,6 +30,7 @@ std::string to_json(const Truth& truth, const UtcText& utc);
 std::string to_json(const Track& track, const UtcText& utc);
 std::string to_json(const Task& task, const UtcText& utc);
 std::string to_json(const KeptOrbit& orbit, const UtcText& utc);
+std::string to_json(const FoundBreakup& breakup, const UtcText& utc);
 
 // Throw `ConfigError` "FILE:LINE: KEY: reason" for a key that is missing or wrong.
 Detection detection_of(const JsonRecord& line);
@@ -38,6 +40,7 @@ Truth truth_of(const JsonRecord& line);
 Track track_of(const JsonRecord& line);
 Task task_of(const JsonRecord& line);
 KeptOrbit kept_orbit_of(const JsonRecord& line);
+FoundBreakup found_breakup_of(const JsonRecord& line);
 /// The object `wcs` of a report.
 Wcs wcs_of(const JsonRecord& object);
 

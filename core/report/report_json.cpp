@@ -336,6 +336,18 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
   json.end_array();
 }
 
+void write_breakups(const RunContents& run, JsonWriter& json) {
+  if (run.breakups.empty()) return;
+  json.key("breakups").begin_array();
+  for (const FoundBreakup& b : run.breakups) {
+    json.begin_object().field("number", b.breakup).field("time_s", rounded(b.time.seconds(), 3));
+    json.field("time_sigma_s", rounded(b.time_sigma_s, 3)).field("parent", b.parent);
+    json.field("altitude_km", rounded((norm(b.position_m) - 6371000.0) / 1e3, 0));
+    json.field("confidence", rounded(b.confidence, 4)).list("members", b.members).end_object();
+  }
+  json.end_array();
+}
+
 void write_clock(const RunContents& run, JsonWriter& json) {
   json.key("nodes").begin_array();
   for (const RunNode& n : run.record.nodes) {
@@ -386,6 +398,7 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
   write_score(run, json);
   write_plan(run, json);
   write_tracks(run, json);
+  write_breakups(run, json);
   write_clock(run, json);
   json.list("files", std::span(run.files).first(std::min(max_files, run.files.size())));
   // Differences of noise in thirds of it take 4.6 bits a pixel.

@@ -228,6 +228,16 @@ void read_tracks(RunContents& run) {
   }
 }
 
+void read_breakups(RunContents& run) {
+  const std::string path = of_fusion(run.directory, run_file::breakups);
+  if (path.empty()) return;
+  for_lines(path, quietly, [&](const JsonRecord& line) {
+    FoundBreakup breakup = found_breakup_of(line);
+    const auto known = std::ranges::find(run.breakups, breakup.breakup, &FoundBreakup::breakup);
+    (known == run.breakups.end() ? run.breakups.emplace_back() : *known) = std::move(breakup);
+  });
+}
+
 /// Reads what the time-masters of `dmise launch` report of their ticks: of each part of the run
 /// one, after those before it.
 void read_ticks(RunContents& run) {
@@ -253,7 +263,8 @@ void read_ticks(RunContents& run) {
 void find_files(RunContents& run) {
   for (const RunFile& file :
        {run_file::record, run_file::frames, run_file::detections, run_file::truth, run_file::tracks,
-        run_file::orbits, run_file::tasks, run_file::positions_csv, run_file::positions})
+        run_file::orbits, run_file::breakups, run_file::tasks, run_file::positions_csv,
+        run_file::positions})
     if (path_exists(path_in(run.directory, file))) run.files.push_back(file.name);
   std::vector<std::string> logs;
   std::error_code ignored;
@@ -276,6 +287,7 @@ RunContents read_contents(const std::string& directory) {
     throw ConfigError(directory + ": no run: neither run.json nor a sensor with frames.jsonl");
   judge(run, std::move(input));
   read_tracks(run);
+  read_breakups(run);
   read_ticks(run);
   find_files(run);
   return run;

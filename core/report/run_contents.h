@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/found_breakup.h"
 #include "core/products/task.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
@@ -83,6 +84,7 @@ struct RunContents {
   Score score;
   std::vector<ReportTrack> tracks;
   std::vector<Task> cues;
+  std::vector<FoundBreakup> breakups;  // the last line of each
   std::vector<ReportTick> ticks;
   std::map<std::string, double> waited_for_s;  // in which the clock waited for a node
   std::vector<std::string> files;              // products and logs, paths from the directory

@@ -22,6 +22,7 @@ inline constexpr RunFile truth{"truth.jsonl", "the scenario says output: {truth:
 inline constexpr RunFile costs{"cost.jsonl", "the sensor has made no frame"};
 inline constexpr RunFile tracks{"tracks.jsonl", "the scenario has no fusion"};
 inline constexpr RunFile orbits{"orbits.jsonl", "the scenario's fusion has no keep_orbits"};
+inline constexpr RunFile breakups{"breakups.jsonl", "the scenario's fusion has no keep_orbits"};
 inline constexpr RunFile tasks{"tasks.jsonl", "the scenario has no cued sensor"};
 inline constexpr RunFile positions_csv{"positions.csv", "the scenario asks for no positions"};
 inline constexpr RunFile positions{"positions.jsonl", "the scenario asks for no positions"};
@@ -30,9 +31,8 @@ inline constexpr RunFile tracks_chart{"tracks.svg", "the scenario has no fusion"
 inline constexpr RunFile page{"index.html", "the report was not written"};
 
 /// Products beside run.json and those in the directories of nodes.
-inline constexpr std::array products{detections,   truth,  frames, positions_csv,
-                                     positions,    tracks, orbits, tasks,
-                                     tracks_chart, page,   night};
+inline constexpr std::array products{detections, truth,    frames, positions_csv, positions, tracks,
+                                     orbits,     breakups, tasks,  tracks_chart,  page,      night};
 /// Tables that a sensor appends to in its own directory: that of frames last, for a frame is done
 /// once it stands there.
 inline constexpr std::array of_sensor{detections, truth, costs, frames};

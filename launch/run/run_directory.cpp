@@ -152,7 +152,8 @@ void RunDirectory::clear(bool others) {
   for (const auto& node : nodes_with_journals(scenario_))
     remove_products(file(node), [](std::string_view name) {
       return name == "inputs.journal" || name == run_file::tracks.name ||
-             name == run_file::tasks.name || name == run_file::orbits.name;
+             name == run_file::tasks.name || name == run_file::orbits.name ||
+             name == run_file::breakups.name;
     });
   if (others || scenario_.output.positions_oem) remove_products(file("positions"), is_ephemeris);
 }

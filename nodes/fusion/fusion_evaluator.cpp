@@ -144,7 +144,8 @@ std::optional<FusionEvaluator::Found> FusionEvaluator::fuse(Tick tick,
                           .unassociated = found.unassociated,
                           .tracks = std::move(found.tracks)},
                .tasks = std::move(*tracked->tasks),
-               .orbits = std::move(found.orbits)};
+               .orbits = std::move(found.orbits),
+               .breakups = std::move(found.breakups)};
 }
 
 std::vector<Task> FusionEvaluator::tasks_of(Tick tick, std::vector<CueWish>* wishes) {
@@ -172,22 +173,24 @@ void FusionEvaluator::open_files(Tick tick) {
   const SimTime from = scenario_.time_of(tick);
   tracks_.emplace(path_in(directory_, run_file::tracks), "time_ns", from);
   if (scheduler_) tasks_.emplace(path_in(directory_, run_file::tasks), "given_ns", from);
-  if (scenario_.fusion->settings.keep_orbits)
+  if (scenario_.fusion->settings.keep_orbits) {
     orbits_.emplace(path_in(directory_, run_file::orbits), "kept_ns", from);
+    breakups_.emplace(path_in(directory_, run_file::breakups), "announced_ns", from);
+  }
   begun_ = true;
 }
 
 void FusionEvaluator::write(const Found& found) {
-  std::string lines;
   const auto utc = [&](SimTime t) { return format_utc(clock_.utc(t), 9); };
-  for (const Track& track : found.tracks.tracks) lines += to_json(track, utc) + "\n";
-  tracks_->add(lines);
-  lines.clear();
-  for (const Task& task : found.tasks) lines += to_json(task, utc) + "\n";
-  if (tasks_) tasks_->add(lines);
-  lines.clear();
-  for (const KeptOrbit& orbit : found.orbits) lines += to_json(orbit, utc) + "\n";
-  if (orbits_) orbits_->add(lines);
+  const auto add = [&](std::optional<LineFile>& file, const auto& products) {
+    std::string lines;
+    for (const auto& product : products) lines += to_json(product, utc) + "\n";
+    if (file) file->add(lines);
+  };
+  add(tracks_, found.tracks.tracks);
+  add(tasks_, found.tasks);
+  add(orbits_, found.orbits);
+  add(breakups_, found.breakups);
 }
 
 std::vector<Message> FusionEvaluator::resume(Tick tick, std::span<const Message>) {

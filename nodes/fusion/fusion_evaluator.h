@@ -55,6 +55,7 @@ class FusionEvaluator : public Evaluator {
     TrackSet tracks;
     std::vector<Task> tasks;
     std::vector<KeptOrbit> orbits;
+    std::vector<FoundBreakup> breakups;
   };
   /// Nothing after the stop.
   std::optional<Found> fuse(Tick tick, std::span<const Message> inputs);
@@ -73,7 +74,7 @@ class FusionEvaluator : public Evaluator {
   std::vector<std::string> cued_;       // names of sensors, in the order of the scenario
   std::optional<Scheduler> scheduler_;  // if any is cued
   std::set<std::pair<std::string, std::string_view>> noted_;  // sensors and obstacles
-  std::optional<LineFile> tracks_, tasks_, orbits_;
+  std::optional<LineFile> tracks_, tasks_, orbits_, breakups_;
   bool begun_ = false;
   std::atomic<std::uint64_t> progress_{0};
 };

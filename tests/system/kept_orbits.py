@@ -83,6 +83,7 @@ def judge(out):
               f"arc {orbit['arcs']} at {1e-9 * orbit['time_ns']:.0f} s: {off_m:.0f} m off, {sigma_m:.0f} m by its covariance")
     burns = [orbit["manoeuvre"] for orbit in orbits if "manoeuvre" in orbit]
     check(len(burns) == 1 and burns[0]["found_ns"] > BURN_S * 1e9, f"{len(burns)} manoeuvre is found, after it was made")
+    check(not lines_of(out / "breakups.jsonl"), "and no breakup")
     off_s = 1e-9 * burns[0]["time_ns"] - BURN_S
     check(abs(off_s) < 4 * burns[0]["time_sigma_s"] and burns[0]["confidence"] > 0.99,
           f"at its time but for {off_s:.0f} s, {burns[0]['time_sigma_s']:.0f} s by its deviation")

@@ -98,6 +98,55 @@ TEST(ArcFit, PriorAloneIsTheEstimate) {
   EXPECT_LT((now->covariance - prior.covariance).norm(), 1e-9 * prior.covariance.norm());
 }
 
+/// A direction that nobody has seen, so that a fit reaches its time.
+AngleObservation unseen(SimTime time) {
+  return {.time = time,
+          .sensor_m = {6.4e6, 0, 0},
+          .direction = {1, 0, 0},
+          .covariance_rad2 = {1e-10, 0, 1e-10},
+          .sensor = "none",
+          .detection_id = "none/0/0"};
+}
+
+// Referee: flights whose manoeuvre is ten seconds earlier and later, by half an orbit.
+TEST(ArcFit, HasTheDerivativeByTheTimeOfAManoeuvre) {
+  constexpr double step_s = 10.0, sigma_s = 900.0;
+  for (const double eccentricity : {0.001, 0.2, 0.7})
+    for (const double at_s : {500.0, 2700.0, 9000.0})
+      for (const Vec<Rtn>& change : {Vec<Rtn>{1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0.4, 0.5, -0.7}}) {
+        const auto s = state_of(KeplerElements{.periapsis_m = 7.185e6,
+                                               .eccentricity = eccentricity,
+                                               .inclination_rad = 1.1,
+                                               .raan_rad = 0.4,
+                                               .argument_of_perigee_rad = 1.0,
+                                               .true_anomaly_rad = -0.3});
+        const OrbitState start{SimTime{}, s.position_m, s.velocity_m_per_s};
+        const SimTime end = sim_seconds(at_s + 3000);
+        const auto at_end = [&](double late_s) {
+          const VelocityChange burn{sim_seconds(at_s + late_s), change};
+          return vector_of(ArcPath::fly(forces(), start, std::span(&burn, 1), end)->at(end));
+        };
+        OrbitEstimate prior = believed_about(start, 1);
+        prior.state = start;
+        const auto fit =
+            ArcFit::make(forces(), prior, {unseen(end)}, {{{sim_seconds(at_s), change}, sigma_s}});
+        ASSERT_TRUE(fit) << fit.reason;
+        const OrbitVector slope = (at_end(step_s) - at_end(-step_s)) / (2 * step_s);
+        const OrbitVector told =
+            fit->path().transition(end) * fit->unknowns().back().effect / sigma_s;
+        // What the change and the turning axes do may nearly cancel.
+        const OrbitState there = fit->path().at(sim_seconds(at_s));
+        const double turn_per_s = norm(there.velocity_m_per_s) / norm(there.position_m);
+        const Eigen::Vector3d off_m = (told - slope).head<3>();
+        const Eigen::Vector3d off_m_per_s = (told - slope).segment<3>(3);
+        EXPECT_LT(off_m.norm(), 0.01 * std::max(norm(change), slope.head<3>().norm()))
+            << eccentricity << " " << at_s << " " << change.x << " " << change.y;
+        EXPECT_LT(off_m_per_s.norm(),
+                  0.01 * std::max(turn_per_s * norm(change), slope.segment<3>(3).norm()))
+            << eccentricity << " " << at_s << " " << change.x << " " << change.y;
+      }
+}
+
 // The forces of the fit are those of the truth, so that its noise may be none.
 TEST(CatalogueObject, KnowsItsErrorAfterADay) {
   MaintenanceSettings settings = quick();
@@ -141,6 +190,31 @@ TEST(CatalogueObject, FindsAManoeuvreItsTimeAndSize) {
   EXPECT_LT(nees(*end, truth.at(truth.end())), 30);
 }
 
+// A change along the normal turns the plane about a line: half an orbit before or after, the
+// opposite change has the same effect on all that follows.
+TEST(CatalogueObject, TellsAllTimesAtWhichAManoeuvreMayHaveBeen) {
+  const VelocityChange change{sim_seconds(27 * hour_s), {0.0, 0.0, 0.4}};
+  const ArcPath truth = flown({change}, 1.7);
+  CatalogueObject object(forces(), believed_about(low_orbit(), 2));
+  for (const auto& pass : passes(truth, 3)) ASSERT_TRUE(object.take(pass));
+  ASSERT_EQ(object.manoeuvres().size(), 1u);
+  const FoundManoeuvre& found = object.manoeuvres().front();
+  ASSERT_FALSE(found.modes.empty());
+  double chances = 0, nearest = 1e9, off_sigmas = 1e9;
+  for (const ManoeuvreMode& mode : found.modes) {
+    chances += mode.chance;
+    const double off_s = std::fabs((mode.change.time - change.time).seconds());
+    const double d2 = off_s * off_s / (mode.time_sigma_s * mode.time_sigma_s);
+    if (d2 > nearest) continue;
+    nearest = d2;
+    off_sigmas = (mode.change.delta_v_m_per_s.z - 0.4) / std::sqrt(mode.covariance(2, 2));
+  }
+  EXPECT_NEAR(chances, 1.0, 1e-12);
+  EXPECT_LT(nearest, 25.0);
+  EXPECT_LT(std::fabs(off_sigmas), 5.0);
+  EXPECT_LE(std::fabs((found.change.time - change.time).seconds()), 5 * found.time_sigma_s);
+}
+
 TEST(CatalogueObject, GoesOnWithinItsWindowForDays) {
   const ArcPath truth = flown({}, 2.9);
   CatalogueObject object(forces(), believed_about(low_orbit(), 3));
@@ -155,10 +229,7 @@ TEST(CatalogueObject, GoesOnWithinItsWindowForDays) {
 TEST(CatalogueObject, RefusesWhatIsEarlyOrWrong) {
   CatalogueObject object(forces(), believed_about(low_orbit(), 1));
   EXPECT_EQ(object.take({}).reason, "there are no observations");
-  AngleObservation seen{.time = sim_seconds(-10),
-                        .sensor_m = {6.4e6, 0, 0},
-                        .direction = {1, 0, 0},
-                        .covariance_rad2 = {1e-10, 0, 1e-10}};
+  AngleObservation seen = unseen(sim_seconds(-10));
   EXPECT_EQ(object.take({seen}).reason, "an observation is before the last");
   seen.time = sim_seconds(10);
   seen.direction.x = std::nan("");

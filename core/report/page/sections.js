@@ -205,6 +205,10 @@ function tracks() {
   if (run.cue_count) parts.push(html("h3", {}, "Cues"), table(counted(run.cue_count, "cue") + (run.cues.length < run.cue_count ? `, the first ${run.cues.length}` : ""),
     [{title: "sensor", name: true}, {title: "target", name: true}, {title: "from [min]"}, {title: "to [min]"}, {title: "exposures"}, {title: "expected information [nat]"}],
     run.cues.map((c) => [c.sensor, trackName(c), fixed(minutes(c.from_s), 2), fixed(minutes(c.to_s), 2), whole(c.exposures), fixed(c.gain_nats, 2)])));
+  if (run.breakups) parts.push(html("h3", {}, "Breakups"), table(counted(run.breakups.length, "breakup"),
+    [{title: "breakup"}, {title: "parent", name: true}, {title: "time [min]"}, {title: "sigma [s]"}, {title: "altitude [km]"}, {title: "confidence"}, {title: "members", name: true}],
+    run.breakups.map((b) => [String(b.number), b.parent || "not known", fixed(minutes(b.time_s), 2), fixed(b.time_sigma_s, 1), whole(b.altitude_km),
+      fixed(b.confidence, 4), b.members.join(", ")])));
   section("tracks", "Tracks and cues", ...parts);
 }
 

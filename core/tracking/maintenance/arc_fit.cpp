@@ -1,6 +1,7 @@
 #include "core/tracking/maintenance/arc_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -106,10 +107,14 @@ void ArcFit::list_unknowns() {
     const Eigen::Matrix3d axes = orbit_axes(there);
     const OrbitMatrix back = path_->transition(change.time).inverse();
     add(change.time, velocity_rows(axes * s.manoeuvre_sigma_m_per_s), back);
-    // A later change acts on a place that the change has not moved.
+    // A later change acts on a place that the change has not moved, along axes that have turned.
     const Vec<Rtn>& v = change.delta_v_m_per_s;
+    const Eigen::Vector3d by = axes * Eigen::Vector3d(v.x, v.y, v.z);
+    const Eigen::Vector3d r = eigen_of(there.position_m);
+    const Eigen::Vector3d turning = r.cross(eigen_of(there.velocity_m_per_s)) / r.squaredNorm();
     OrbitVector later = OrbitVector::Zero();
-    later.head<3>() = -time_sigma_s * (axes * Eigen::Vector3d(v.x, v.y, v.z));
+    later.head<3>() = -time_sigma_s * by;
+    later.segment<3>(3) = time_sigma_s * turning.cross(by);
     add(change.time, later, back);
   }
 }
@@ -261,10 +266,11 @@ OrbitEstimate moved_along(const MaintenanceForces& forces, const ArcPath& path,
                           const OrbitMatrix& covariance, SimTime to) {
   const OrbitMatrix all = path.transition(to);
   OrbitEstimate out{path.at(to), all * covariance * all.transpose()};
-  const double every_s = forces.settings().noise_every_s;
-  for (SimTime t = path.start(); t < to; t = t + sim_seconds(every_s)) {
-    const double length_s = std::min(every_s, (to - t).seconds());
-    const SimTime middle = t + sim_seconds(length_s / 2);
+  const double every_s = forces.settings().noise_every_s, sense = to < path.start() ? -1 : 1;
+  for (SimTime t = path.start(); sense * (to - t).seconds() > 0;
+       t = t + sim_seconds(sense * every_s)) {
+    const double length_s = std::min(every_s, std::fabs((to - t).seconds()));
+    const SimTime middle = t + sim_seconds(sense * length_s / 2);
     const OrbitState there = path.at(middle);
     const Eigen::Matrix<double, orbit_size, 3> sized =
         velocity_rows(orbit_axes(there) * forces.noise_m_per_s(there, length_s).asDiagonal());

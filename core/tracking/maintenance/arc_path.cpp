@@ -1,5 +1,8 @@
 #include "core/tracking/maintenance/arc_path.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/tracking/propagate.h"
 
 namespace dmise {
@@ -26,8 +29,8 @@ Outcome<ArcPath> ArcPath::fly(const MaintenanceForces& forces, const OrbitState&
   if (!is_sane(start)) return Result::refused("the state is not finite or out of range");
   NumericalFlight flight{.epoch_s = start.time.seconds(),
                          .state = {start.position_m, start.velocity_m_per_s},
-                         .from_s = start.time.seconds(),
-                         .to_s = to.seconds()};
+                         .from_s = std::min(start.time, to).seconds(),
+                         .to_s = std::max(start.time, to).seconds()};
   for (const VelocityChange& change : changes)
     flight.manoeuvres.push_back(
         {.at_s = change.time.seconds(), .delta_v_m_per_s = change.delta_v_m_per_s});
@@ -43,11 +46,12 @@ Outcome<ArcPath> ArcPath::fly(const MaintenanceForces& forces, const OrbitState&
 std::string_view ArcPath::chain() {
   OrbitMatrix all = OrbitMatrix::Identity();
   OrbitState from = start_;
+  const double sense = end_ < start_.time ? -1 : 1;
   for (SimTime time = start_.time;;) {
     states_.push_back(from);
     transitions_.push_back(all);
-    time = time + sim_seconds(step_s);
-    if (time > end_) return {};
+    time = time + sim_seconds(sense * step_s);
+    if (sense * (time - end_).seconds() > 0) return {};
     const auto moved =
         propagate_with_transition(forces_->derivatives(), from, time, derivative_steps);
     if (!moved) return moved.reason;
@@ -63,7 +67,8 @@ OrbitState ArcPath::at(SimTime time) const {
 }
 
 OrbitMatrix ArcPath::transition(SimTime time) const {
-  const auto k = std::min(std::size_t((time - start_.time).seconds() / step_s), states_.size() - 1);
+  const double steps = std::fabs((time - start_.time).seconds()) / step_s;
+  const auto k = std::min(std::size_t(steps), states_.size() - 1);
   const auto moved =
       propagate_with_transition(forces_->derivatives(), states_[k], time, derivative_steps);
   return moved ? OrbitMatrix(moved->transition * transitions_[k]) : transitions_[k];

@@ -14,12 +14,12 @@ struct VelocityChange {
   Vec<Rtn> delta_v_m_per_s;
 };
 
-/// The path of one object from a start on, with the derivatives of its states by those at the
-/// start.
+/// The path of one object from a start on, or back from there, with the derivatives of its states
+/// by those at the start.
 class ArcPath {
  public:
-  /// Refuses a state that is not sane and a path that ends before `to` > start.time. `changes` in
-  /// order of time, none at or before the start. `forces` must live as long.
+  /// Refuses a state that is not sane and a path that ends before `to`. `changes` in order of time,
+  /// none at or before the start. A path to an earlier time has none. `forces` must live as long.
   static Outcome<ArcPath> fly(const MaintenanceForces& forces, const OrbitState& start,
                               std::span<const VelocityChange> changes, SimTime to);
 

@@ -7,41 +7,11 @@ namespace dmise {
 namespace {
 
 constexpr double candidate_s = 600.0;     // between times at which a manoeuvre is tried
-constexpr double shift_s = 900.0;         // by which a fit may move it from there
-constexpr double likelier = 2.0;          // in the sum of squares, of a time that takes its place
 constexpr double first_candidate = 0.6;   // gain to first order, over the wanted one
 constexpr double settled_s = 8 * 3600.0;  // observations' time before manoeuvres are looked for
 constexpr int settled_arcs = 3;
+constexpr double max_windows = 1.5;    // to which a window grows while a manoeuvre is uncertain
 constexpr double walk_per_day = 0.04;  // growth of drag's and sunlight's variance, over the prior's
-
-std::vector<ManoeuvreGuess> guesses(const ArcFit& fit) {
-  std::vector<ManoeuvreGuess> out = fit.manoeuvres();
-  for (ManoeuvreGuess& guess : out) guess.time_sigma_s = shift_s;
-  return out;
-}
-
-const ManoeuvreCandidate& nearest(const std::vector<ManoeuvreCandidate>& all, SimTime time) {
-  return *std::ranges::min_element(
-      all, {}, [&](const ManoeuvreCandidate& c) { return std::abs((c.change.time - time).ns); });
-}
-
-Eigen::Vector3d size_of(const VelocityChange& change) {
-  return {change.delta_v_m_per_s.x, change.delta_v_m_per_s.y, change.delta_v_m_per_s.z};
-}
-
-/// How much changes differ among the times at which a manoeuvre may have been.
-Eigen::Matrix3d spread_of(const std::vector<ManoeuvreCandidate>& all) {
-  const ManoeuvreCandidate& best = *best_of(all);
-  Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
-  double sum = 0;
-  for (const ManoeuvreCandidate& c : all) {
-    const double weight = std::exp(0.5 * (c.gain - best.gain));
-    const Eigen::Vector3d off = size_of(c.change) - size_of(best.change);
-    sum += weight;
-    out += weight * off * off.transpose();
-  }
-  return out / sum;
-}
 
 }  // namespace
 
@@ -66,48 +36,28 @@ Outcome<ArcFit> CatalogueObject::with_arc(const std::vector<AngleObservation>& a
   if (fit_) all = fit_->observations();
   all.insert(all.end(), arc.begin(), arc.end());
   return ArcFit::make(*forces_, prior_, std::move(all),
-                      fit_ ? guesses(*fit_) : std::vector<ManoeuvreGuess>{},
+                      fit_ ? guesses_of(*fit_) : std::vector<ManoeuvreGuess>{},
                       fit_ ? &*fit_ : nullptr);
 }
 
-std::vector<ManoeuvreCandidate> CatalogueObject::candidates(
-    const ArcFit& fit, std::optional<std::size_t> instead_of) const {
-  return scan_for_manoeuvre(*forces_, fit, fit.prior().state.time + sim_seconds(candidate_s),
-                            fit.end() - sim_seconds(1.0), candidate_s, instead_of);
-}
-
 void CatalogueObject::place(ArcFit& fit, std::size_t k, FoundManoeuvre& known) const {
-  auto all = candidates(fit, k);
-  const ManoeuvreCandidate* best = best_of(all);
-  const SimTime now = fit.manoeuvres()[k].change.time;
-  if (best && best->gain > nearest(all, now).gain + likelier) {
-    auto moved = guesses(fit);
-    moved[k].change = best->change;
-    auto other = ArcFit::make(*forces_, fit.prior(), fit.observations(), moved, &fit);
-    if (other) {
-      other->iterate();
-      if (other->cost() < fit.cost()) {
-        fit = std::move(*other);
-        all = candidates(fit, k);
-        best = best_of(all);
-      }
-    }
-  }
-  if (!best) return;
-  known.change = fit.manoeuvres()[k].change;
-  known.time_sigma_s = std::hypot(time_sigma_s(all), std::sqrt(fit.covariance_of(k)(3, 3)));
-  known.covariance = fit.covariance_of(k).topLeftCorner<3, 3>() + spread_of(all);
-  known.gain = best->gain;
-  known.confidence = confidence_of(best->gain, all.size());
+  const auto all = modes_of(*forces_, fit, k);
+  if (!all) return;
+  known.change = all->modes.front().change;
+  known.time_sigma_s = all->time_sigma_s();
+  known.covariance = all->covariance();
+  known.modes = all->modes;
+  known.gain = all->gain;
+  known.confidence = confidence_of(all->gain, all->times);
 }
 
 std::optional<FoundManoeuvre> CatalogueObject::search(const ArcFit& before, ArcFit& fit) const {
   const double wanted = forces_->settings().manoeuvre_gain;
-  const auto all = candidates(before, {});
+  const auto all = ManoeuvreScan(*forces_, before).every(candidate_s);
   const ManoeuvreCandidate* best = best_of(all);
   if (!best || best->gain < first_candidate * wanted) return std::nullopt;
-  auto with_it = guesses(before);
-  with_it.push_back({best->change, shift_s});
+  auto with_it = guesses_of(before);
+  with_it.push_back({best->change, manoeuvre_shift_s});
   auto other = ArcFit::make(*forces_, before.prior(), before.observations(), with_it, &before);
   if (!other) return std::nullopt;
   other->iterate();
@@ -126,7 +76,7 @@ std::size_t CatalogueObject::leave_outliers_out(ArcFit& fit, SimTime since) cons
       kept.push_back(fit.observations()[i]);
   const std::size_t out = fit.observations().size() - kept.size();
   if (out == 0 || kept.empty()) return 0;
-  auto other = ArcFit::make(*forces_, fit.prior(), std::move(kept), guesses(fit), &fit);
+  auto other = ArcFit::make(*forces_, fit.prior(), std::move(kept), guesses_of(fit), &fit);
   if (!other) return 0;
   other->iterate();
   fit = std::move(*other);
@@ -170,7 +120,15 @@ Outcome<ArcNews> CatalogueObject::take(const std::vector<AngleObservation>& arc)
 
 void CatalogueObject::keep(ArcFit&& fit) {
   fit_ = std::move(fit);
-  if (const auto now = fit_->estimate_at(fit_->end())) after_.push_back(*now);
+  // What is believed while a manoeuvre may have been at several times is no prior.
+  const bool is_certain = std::all_of(
+      manoeuvres_.begin() + long(first_fitted_), manoeuvres_.end(), [](const FoundManoeuvre& m) {
+        return m.modes.size() == 1 && m.time_sigma_s < manoeuvre_shift_s;
+      });
+  const double longest_s = max_windows * forces_->settings().window_s;
+  const bool is_long = (fit_->end() - prior_.state.time).seconds() > longest_s;
+  if (is_certain || is_long)
+    if (const auto now = fit_->estimate_at(fit_->end())) after_.push_back(*now);
   slide();
 }
 
@@ -190,8 +148,8 @@ void CatalogueObject::slide() {
     if (prior.state.time < o.time) kept.push_back(o);
   std::vector<ManoeuvreGuess> open;
   std::size_t given_up = 0;
-  for (const ManoeuvreGuess& m : guesses(*fit_)) {
-    if (prior.state.time + sim_seconds(shift_s) < m.change.time)
+  for (const ManoeuvreGuess& m : guesses_of(*fit_)) {
+    if (prior.state.time + sim_seconds(manoeuvre_shift_s) < m.change.time)
       open.push_back(m);
     else if (m.change.time < prior.state.time && open.empty())
       ++given_up;

@@ -2,16 +2,18 @@
 #include <optional>
 #include <vector>
 
-#include "core/tracking/maintenance/manoeuvre_scan.h"
+#include "core/tracking/maintenance/manoeuvre_modes.h"
 
 namespace dmise {
 
 /// A manoeuvre that the observations of an object show.
 struct FoundManoeuvre {
-  SimTime found;              // time of the observation by which it was found
-  VelocityChange change;      // along radius, motion and normal
-  double time_sigma_s = 0.0;  // spread of all times at which it may have been
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // errors of the change [m^2/s^2]
+  SimTime found;  // time of the observation by which it was found
+  // The likeliest mode, with the spread of all about it.
+  VelocityChange change;
+  double time_sigma_s = 0.0;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // [m^2/s^2]
+  std::vector<ManoeuvreMode> modes = {};                 // all, the likeliest first
   double gain = 0.0;                                     // by which it lowers the sum of squares
   double confidence = 0.0;  // probability that noise would not have shown it, [0, 1]
 };
@@ -36,7 +38,8 @@ class CatalogueObject {
   /// early or without a path, and stays as it was.
   Outcome<ArcNews> take(const std::vector<AngleObservation>& arc);
 
-  SimTime time() const;  // the last observation's, or the prior's
+  SimTime time() const;                                // the last observation's, or the prior's
+  SimTime begin() const { return prior_.state.time; }  // when the window begins
   Outcome<OrbitEstimate> estimate_at(SimTime time) const;
   /// All manoeuvres so far, by the time at which they were found. The latest are estimated anew by
   /// each arc.
@@ -47,10 +50,8 @@ class CatalogueObject {
   /// Looks for a manoeuvre that `before`, the fit with the orbit of the last arc, shows better than
   /// `fit`, which has none; if there is one, `fit` has it then.
   std::optional<FoundManoeuvre> search(const ArcFit& before, ArcFit& fit) const;
-  /// Moves a manoeuvre to the time that fits best of all. Fills what is known of it.
+  /// Moves a manoeuvre to its likeliest time. Fills what is known of it.
   void place(ArcFit& fit, std::size_t k, FoundManoeuvre& known) const;
-  std::vector<ManoeuvreCandidate> candidates(const ArcFit& fit,
-                                             std::optional<std::size_t> instead_of) const;
   Outcome<ArcFit> with_arc(const std::vector<AngleObservation>& arc) const;
   std::size_t leave_outliers_out(ArcFit& fit, SimTime since) const;
   void keep(ArcFit&& fit);

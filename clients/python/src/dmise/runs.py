@@ -88,8 +88,12 @@ class Run:
     @functools.cached_property
     def orbits(self) -> list[dict[str, Any]]:
         """A line of orbits.jsonl for each arc of a kept orbit, none unless the scenario's `fusion` has `keep_orbits`."""
-        path = self.directory / "orbits.jsonl"
-        return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()] if path.exists() else []
+        return self._lines("orbits.jsonl")
+
+    @functools.cached_property
+    def breakups(self) -> list[dict[str, Any]]:
+        """A line of breakups.jsonl for each breakup, and again for each further member; none unless the scenario's `fusion` has `keep_orbits`."""
+        return self._lines("breakups.jsonl")
 
     def images(self, sensor: str) -> Iterator[tuple[int, pathlib.Path]]:
         """(frame, its FITS file) of a sensor, in order."""
@@ -101,6 +105,10 @@ class Run:
         from astropy.io import fits
 
         return fits.open(self.directory / sensor / f"frame-{frame:06d}.fits")
+
+    def _lines(self, name: str) -> list[dict[str, Any]]:
+        path = self.directory / name
+        return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()] if path.exists() else []
 
     def _read(self, name: str, cls: Any) -> Records:
         path = self.directory / name

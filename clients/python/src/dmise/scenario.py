@@ -1748,8 +1748,8 @@ class Fusion(TypedDict, total=False):
     confirm_arc: int
     """Further detections that confirm a track that one site began. Default: 4."""
     keep_orbits: Switch
-    """Keep the orbits of objects from arc to arc of their detections by numerical forces, find manoeuvres, and write
-    `orbits.jsonl`. Runs of at most 18 days. Default: off."""
+    """Keep the orbits of objects from arc to arc of their detections by numerical forces, find manoeuvres and breakups, and
+    write `orbits.jsonl` and `breakups.jsonl`. Runs of at most 18 days. Default: off."""
     cue_delay_ticks: int
     """Ticks between the decision for a task and its beginning. Default: 2."""
     not_in_catalogue: Sequence[Text]
