@@ -17,11 +17,13 @@
 #include "core/detection/source/line_profile.h"
 #include "core/detection/source/scene.h"
 #include "core/detection/source/source_fit.h"
+#include "core/detection/source/star_hypothesis.h"
 #include "core/detection/source/template_snr.h"
 #include "core/detection/stars/alike_streaks.h"
 #include "core/detection/stars/hide_stars.h"
 #include "core/detection/stars/psf_measure.h"
 #include "core/detection/stars/trailed_stars.h"
+#include "core/detection/streaks/evenness.h"
 #include "core/detection/streaks/faint_ends.h"
 #include "core/detection/streaks/faint_streaks.h"
 #include "core/detection/streaks/join_flashes.h"
@@ -93,7 +95,8 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
 
 /// A faint streak must also stand out against parallel lines beside it: where several stars share
 /// every few pixels, some are aligned by chance. The scatter of stars has a longer tail than pixel
-/// noise, so it is weighted higher.
+/// noise, so it is weighted higher. Where stars are too few for such a row, those that light a part
+/// of a line beside it don't count.
 bool is_row_of_stars(const Scene& scene, const Source& source) {
   if (!source.streak) return false;
   const bool is_short = source.trail().length_px < 25;  // longer ones may be structures of the sky
@@ -102,11 +105,15 @@ bool is_row_of_stars(const Scene& scene, const Source& source) {
   if (source.snr() > detection_limits::even_snr && snr_per_px > detection_limits::even_snr_per_px)
     return false;
   const double rise = rise_above_neighbours(scene, source.trail());
-  if (rise <= 0) return true;
   const double noise = 1 / source.snr(), scatter = 1 / rise;  // in units of the streak's light
   const double stars = std::sqrt(std::max(scatter * scatter - noise * noise, 0.0));
-  return std::hypot(detection_limits::min_snr * noise, detection_limits::min_snr_in_stars * stars) >
-         1;
+  if (rise > 0 && std::hypot(detection_limits::min_snr * noise,
+                             detection_limits::min_snr_in_stars * stars) <= 1)
+    return false;
+  return !is_continuous(scene, source.trail()) ||
+         rise_above_neighbours(scene, source.trail(), LineLight::median) <
+             detection_limits::min_snr ||
+         !is_beyond_stars(scene, source);
 }
 
 /// Whether noise may have made a streak: its light is not sure with the errors of its ends and of
@@ -138,6 +145,11 @@ std::vector<Component> components_of(const Scene& scene, FilteredFrame& filtered
   return find_components(scene.counts, scene.background, filtered.sigma_px,
                          detection_limits::connect_snr, detection_limits::seed_snr, threads,
                          &filtered);
+}
+
+/// Sources for each pixel.
+double density_of(const std::vector<Component>& components, const CountImage& counts) {
+  return double(components.size() + 1) / double(counts.pixels.size());
 }
 
 /// What a search has found, and the sources of its detections.
@@ -240,6 +252,7 @@ bool detect_among_trails(Scene& with_stars, const FrameHeader& header,
   scene.use(with_stars.psf);
   FilteredFrame filtered(frame.counts.columns, frame.counts.rows, scene.sigma_px);
   const auto components = components_of(scene, filtered, threads);
+  scene.sources_per_px2 = density_of(components, frame.counts);
   if (scene.unusable) hide(filtered, *scene.unusable);
   hide(filtered, frame.lit);
   std::vector<Trail> subtracted;
@@ -261,7 +274,7 @@ Found found_by(const FrameHeader& header, const CountImage& counts, const PixelM
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = components_of(scene, filtered, threads);
   scene.use(measure_psf(scene, components));
-  scene.sources_per_px2 = double(components.size() + 1) / double(counts.pixels.size());
+  scene.sources_per_px2 = density_of(components, counts);
   if (scene.unusable) hide(filtered, *scene.unusable);
   Found found;
   std::optional<KnownStars> known;
@@ -296,8 +309,8 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   FrameHeader drifting = header;
   set_even_drift(drifting, trails->trail);
   Found among = found_by(drifting, counts, unusable, threads, sky, settings);
-  // Most of what a frame shows is stars: they are what leaves the fewer objects.
-  if (among.result.detections.size() >= found.result.detections.size())
+  // Most of what a frame shows is stars: they are what leaves no more objects.
+  if (among.result.detections.size() > found.result.detections.size())
     return std::move(found.result);
   among.result.star_trails = trails;
   return std::move(among.result);

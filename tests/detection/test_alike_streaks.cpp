@@ -130,6 +130,19 @@ TEST(AlikeStreaks, OfFewFaintStarsAreNoObjects) {
   }
 }
 
+// Streaks that are alike and as many points: chance makes the former alike in one of 1000 frames.
+TEST(AlikeStreaks, BesideAsManyPointsAreStars) {
+  for (const unsigned seed : {15U, 16U, 17U}) {
+    SimulatedFrame frame = empty_frame(seed);
+    for (int i = 0; i < 4; ++i)
+      frame.add_streak(150 + 311 * i % 500, 150 + 173 * i % 471, trail_px, angle_rad, 3 * trail_e);
+    for (int i = 0; i < 4; ++i) frame.add_point(120 + 130 * i, 620 - 110 * i, 6000);
+    const DetectionResult result = detected(frame);
+    EXPECT_TRUE(result.star_trails) << seed;
+    EXPECT_EQ(result.detections.size(), 4u) << seed;
+  }
+}
+
 TEST(AlikeStreaks, OfATrainStayObjects) {
   SimulatedFrame frame = empty_frame(8);
   for (int i = 0; i < 5; ++i)

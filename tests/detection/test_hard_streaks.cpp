@@ -28,6 +28,55 @@ TEST(HardStreaks, AFaintOneSixPixelsBesideABrightOneIsFound) {
   expect_streaks_alone(scene, {.flux = 0.1});
 }
 
+/// A mount that follows the stars and a point spread of 4 px: streaks of an SNR of 20, and bright
+/// stars that light parts of lines beside them.
+std::size_t found_among_bright_stars(int stars) {
+  constexpr int size = 600;
+  FrameHeader header = camera_header(size, size, 5000, 0, 5, false);
+  header.psf_fwhm_px = 4;
+  header.mount = "unknown";
+  SimulatedFrame frame(header, size, size, HardFrame::sky_e, 31);
+  std::vector<TrueStreak> streaks;
+  for (int i = 0; i < 4; ++i)
+    streaks.push_back({150.0 + 100 * i, 120.0 + 120 * i, 50.0 + 10 * i, 0.4 + 0.7 * i, 30000});
+  for (const TrueStreak& s : streaks)
+    frame.add_streak(s.x_px, s.y_px, s.length_px, s.angle_rad, s.flux_e);
+  for (int i = 0; i < stars;) {
+    const PixelPosition at{frame.uniform(0, size), frame.uniform(0, size)};
+    if (std::ranges::any_of(streaks, [&](const auto& s) { return s.distance_px(at) < 20; }))
+      continue;
+    frame.add_point(at.x_px, at.y_px, 2e4 * std::pow(30, frame.uniform(0, 1)));
+    ++i;
+  }
+  Threads one;
+  const DetectionResult result = detect(frame.expose(), header, nullptr, one);
+  std::size_t found = 0;
+  for (const Detection& d : result.detections) {
+    const bool is_true = std::ranges::any_of(streaks, [&](const auto& s) {
+      return s.distance_px({d.x_px, d.y_px}) < 3;
+    });
+    EXPECT_TRUE(is_true) << text_of(d);
+    found += is_true;
+  }
+  return found;
+}
+
+TEST(HardStreaks, AmongBrightStarsAreFound) {
+  for (const int stars : {20, 60, 120}) EXPECT_EQ(found_among_bright_stars(stars), 4u) << stars;
+}
+
+// A line that is lit where a bright star lies has more light than the streak.
+TEST(HardStreaks, AFaintOneBeforeABrightStarStaysWhereItIs) {
+  for (const unsigned seed : {21U, 22U, 23U}) {
+    HardFrame scene(500, 400, seed);
+    scene.add({200, 200, 40, 0.3, 9000});
+    const PixelPosition beyond = scene.streaks[0].at(55);
+    scene.frame.add_star(beyond.x_px, beyond.y_px, 2e6);
+    for (const Detection& d : scene.detected().detections)
+      EXPECT_LT(scene.streaks[0].distance_px({d.x_px, d.y_px}), 4) << seed << " " << text_of(d);
+  }
+}
+
 TEST(HardStreaks, ATrainOnOneLineIsTen) {
   for (const double gap_px : {30.0, 60.0}) {
     HardFrame scene(1000, 800, 4);

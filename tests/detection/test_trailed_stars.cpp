@@ -105,6 +105,34 @@ TEST(TrailedStars, LeavePointsToBeFoundUnderAnyMount) {
   }
 }
 
+// What stars leave that are too faint to be subtracted does not hide a bright point.
+TEST(TrailedStars, LeavePointsBesideFaintOnes) {
+  FrameHeader header = camera_header(size, size, focal_px, 0.0, exposure_s, true);
+  header.mount = "unknown";
+  int seen = 0, others = 0;
+  for (const unsigned seed : {41U, 42U}) {
+    SimulatedFrame frame(header, size, size, sky_e, seed);
+    for (int i = 0; i < 60; ++i)
+      frame.add_star(frame.uniform(0, size), frame.uniform(0, size),
+                     8000 * std::pow(12.0, frame.uniform(0, 1)));
+    std::vector<PixelPosition> points;
+    for (int i = 0; i < 20; ++i) {
+      points.push_back({60.0 + 97 * (i % 5) + frame.uniform(-10, 10),
+                        60.0 + 97 * double(i / 5) + frame.uniform(-10, 10)});
+      frame.add_point(points.back().x_px, points.back().y_px, 6000);                  // SNR 50
+      frame.add_star(points.back().x_px + 2, points.back().y_px + 24 + i % 3, 3500);  // SNR 5
+    }
+    Threads one;
+    for (const Detection& d : detect(frame.expose(), header, nullptr, one).detections) {
+      bool is_point = false;
+      for (const PixelPosition& p : points) is_point |= is_near(p, {d.x_px, d.y_px}, 1.0);
+      (is_point ? seen : others) += 1;
+    }
+  }
+  EXPECT_GE(seen, 36);  // some lie on bright trails
+  EXPECT_EQ(others, 0);
+}
+
 /// Detections in a frame of groups of stars. Each has `count` on a line along the trails, of which
 /// the distances are `apart` lengths of a trail, with light that falls to a half from one to the
 /// next.

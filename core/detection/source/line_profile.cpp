@@ -137,17 +137,20 @@ Trail trail_along(const Line& line, const Extent& extent, double level) {
   return t;
 }
 
-double rise_above_neighbours(const Scene& scene, const Trail& trail) {
+double rise_above_neighbours(const Scene& scene, const Trail& trail, LineLight by) {
   const Line line = line_of(trail);
   const double level = trail.flux_e / trail.length_px;
   const Extent extent = extent_of(line, trail.length_px / 2);
   const auto own = slices(scene, line, extent.from, extent.to, 0.0);
+  const auto light = [&](const std::vector<Slice>& on) {
+    return by == LineLight::median ? median_level(on) : clipped_mean(on, level)[0];
+  };
   const double step_px = 4 * scene.sigma_px;
   std::vector<double> beside;
   for (int k = -neighbours; k <= neighbours; ++k) {
     if (std::abs(k) < 2) continue;
     const auto other = slices(scene, line, extent.from, extent.to, k * step_px);
-    if (2 * other.size() > own.size()) beside.push_back(clipped_mean(other, level)[0]);
+    if (2 * other.size() > own.size()) beside.push_back(light(other));
   }
   if (beside.size() < min_neighbours) return std::numeric_limits<double>::infinity();
   // Stars only add light, so upward scatter counts if it is larger.
@@ -155,7 +158,7 @@ double rise_above_neighbours(const Scene& scene, const Trail& trail) {
   const double upwards = (value_of_rank(beside, beside.size() * 9 / 10) - middle) / 1.2816;
   for (double& value : beside) value = std::abs(value - middle);
   const double scatter = std::max(1.4826 * middle_of(std::move(beside)), upwards);
-  return (clipped_mean(own, level)[0] - middle) / std::max(scatter, 1e-12);
+  return (light(own) - middle) / std::max(scatter, 1e-12);
 }
 
 }  // namespace dmise

@@ -92,9 +92,14 @@ std::optional<Extent> dark_gap(const Scene& scene, const Line& line, const Exten
 /// A trail along the line over the extent.
 Trail trail_along(const Line& line, const Extent& extent, double level);
 
+/// Light of a line: the mean of its slices, none of which counts for much more than the streak's,
+/// or their median, to which a few stars add nothing.
+enum class LineLight { mean, median };
+
 /// Returns the excess of a trail's light over parallel lines beside it, in units of their scatter,
 /// which exceeds the pixels' noise where faint stars are dense. Infinite if there are too few
 /// lines.
-double rise_above_neighbours(const Scene& scene, const Trail& trail);
+double rise_above_neighbours(const Scene& scene, const Trail& trail,
+                             LineLight by = LineLight::mean);
 
 }  // namespace dmise

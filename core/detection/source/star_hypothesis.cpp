@@ -12,6 +12,8 @@ namespace dmise {
 namespace {
 
 constexpr int max_stars = 4;  // in a row, that may imitate a streak
+// Stars up to 2.5 FWHM apart are one light: its length for each, with their own widths.
+constexpr double one_light_sigmas = 5.5;
 
 /// `count` stars in a row along the line, which share its flux.
 std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
@@ -93,13 +95,11 @@ bool are_two_trails(const Scene& scene, const Trail& star, const Source& point) 
   });
 }
 
-/// Deviance by which chance disfavours a row of stars along a line: twice the negative logarithm of
-/// the number of such rows that a frame of so many stars has. Two stars may belong together.
-double rarity_of_row(const Scene& scene, const Trail& line, int count) {
+/// How many rows of three or more stars along a line such as this one a frame of so many stars has
+/// by chance. Two stars may belong together.
+double chance_rows(const Scene& scene, const Trail& line, int count) {
   constexpr double counts_slope = 1.1;  // numbers fall with this power of the light
   constexpr double companions = 0.01;   // share of stars that have one so near, by nature
-  constexpr double max_rarity = 40.0;   // what is beside all chance has other reasons
-  if (count < 3 || !(scene.sources_per_px2 > 0)) return 0.0;
   const double noise_e =
       scene.noise_e_at(line.x_px, line.y_px) * 2 * std::sqrt(pi) * scene.sigma_px;
   const double snr = line.flux_e / count / noise_e;
@@ -110,9 +110,16 @@ double rarity_of_row(const Scene& scene, const Trail& line, int count) {
   const auto chance = [&](double area_px2) {
     return std::clamp(per_px2 * area_px2, companions, 1.0);
   };
-  const double rows = per_px2 * double(scene.counts.pixels.size()) * chance(second) *
-                      std::pow(chance(next), count - 2);
-  return std::clamp(-2 * std::log(rows), 0.0, max_rarity);
+  return per_px2 * double(scene.counts.pixels.size()) * chance(second) *
+         std::pow(chance(next), count - 2);
+}
+
+/// Deviance by which chance disfavours a row of stars along a line: twice the negative logarithm of
+/// the number of such rows.
+double rarity_of_row(const Scene& scene, const Trail& line, int count) {
+  constexpr double max_rarity = 40.0;  // what is beside all chance has other reasons
+  if (count < 3 || !(scene.sources_per_px2 > 0)) return 0.0;
+  return std::clamp(-2 * std::log(chance_rows(scene, line, count)), 0.0, max_rarity);
 }
 
 /// A point where a fit leaves the brightest pixel.
@@ -142,10 +149,23 @@ double share_of_trails_on(const Scene& scene, const Trail& line) {
   return share * share;
 }
 
+bool is_beyond_stars(const Scene& scene, const Source& streak) {
+  constexpr double min_star_snr = 4.0;
+  constexpr double unlikely = 1e-2, excluded = 1e-5;  // rows in a frame
+  if (!(scene.sources_per_px2 > 0)) return false;
+  const Trail& t = streak.trail();
+  const double apart_px =
+      one_light_sigmas * scene.sigma_px + scene.star_trail(t.x_px, t.y_px).length_px;
+  const int stars = int(std::max(t.length_px / apart_px, 3.0));
+  if (streak.snr() < min_star_snr * std::sqrt(stars)) return false;
+  const double rows = chance_rows(scene, t, stars);
+  return rows < excluded || (rows < unlikely && beats_stars(scene, streak));
+}
+
 bool may_be_row_of_stars(const Scene& scene, const Trail& streak, double row_px) {
   constexpr double across_trails = 3.0, along_trails = 10.0;  // lengths of a star's trail
-  // Stars up to 2.5 FWHM apart are one light: as long as four of them, with their own widths.
-  constexpr double max_row_sigmas = 22.0;
+  // As long as four stars that are one light.
+  constexpr double max_row_sigmas = 4 * one_light_sigmas;
   const Trail star = scene.star_trail(streak.x_px, streak.y_px);
   const double trails =
       across_trails + (along_trails - across_trails) * share_of_trails_on(scene, streak);

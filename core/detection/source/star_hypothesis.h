@@ -19,6 +19,10 @@ double share_of_trails_on(const Scene& scene, const Trail& line);
 /// their direction.
 bool may_be_row_of_stars(const Scene& scene, const Trail& streak, double row_px);
 
+/// Whether a frame has too few stars for a row of so many as make an even light of a streak's
+/// length, each above the noise.
+bool is_beyond_stars(const Scene& scene, const Source& streak);
+
 /// Deviance of the pixels for a fit of `count` stars in a row along the line.
 double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
                          int count, const FitSettings& settings);

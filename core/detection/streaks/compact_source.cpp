@@ -162,6 +162,32 @@ class Candidate {
     return deviance_of_stars(around_.usable, light_, star, 2, fit_settings);
   }
 
+  /// Without the pixels beside a source's core to which others add light, and with the error of a
+  /// PSF that differs as much; empty if few are left.
+  std::optional<Candidate> without_others(Trail of) const {
+    constexpr double psf_error = 0.15, min_kept = 0.6, reach_sigmas = 3.0, core_sigmas = 1.5;
+    constexpr int rounds = 3;
+    if (is_saturated()) return std::nullopt;
+    Candidate alone = *this;
+    alone.model_error_ = psf_error;
+    for (int round = 0; round < rounds; ++round) {
+      const Around around(of, reach_sigmas * scene_.sigma_px + 0.5);
+      auto near = around_.usable;
+      std::erase_if(near, [&](const FitPixel& p) { return !around.has(p.x, p.y); });
+      alone.around_.usable = without_outliers(near, {&of, 1}, 0.0, 2 * psf_error, psf());
+      const Around core(of, core_sigmas * scene_.sigma_px);
+      const auto in_core = [&](const FitPixel& p) { return core.has(p.x, p.y); };
+      if (!alone.has_light() ||
+          double(alone.around_.usable.size()) < min_kept * double(near.size()) ||
+          std::ranges::count_if(alone.around_.usable, in_core) <
+              std::ranges::count_if(near, in_core))
+        return std::nullopt;
+      of = alone.fit(psf(), of, of.length_px > 0 ? trail_line : trail_place, 8).trails[0];
+    }
+    alone.light_ = moments(alone.around_.usable, scene_.sigma_px);
+    return alone;
+  }
+
   /// The final fit; empty if it fails or does not explain what is saturated.
   std::optional<Source> source(const Trail& start, bool streak) const {
     auto source = is_saturated() ? from_wings(scene_, start, streak, around_.clipped, model_error_)
@@ -202,10 +228,10 @@ class Candidate {
     return significant;
   }
 
-  bool is_line(const TrailFit& as_line) const {
-    return as_line.good(4.0) && plausible(scene_, as_line.trails[0]) &&
-           as_line.trails[0].length_px >= 1.0;
+  bool may_be_line(const TrailFit& as_line) const {
+    return plausible(scene_, as_line.trails[0]) && as_line.trails[0].length_px >= 1.0;
   }
+  bool is_line(const TrailFit& as_line) const { return as_line.good(4.0) && may_be_line(as_line); }
 
   Psf psf() const { return scene_.psf.at({light_.x_px, light_.y_px}); }
   Psf nearest_gaussian() const { return scene_.psf.sigma_at({light_.x_px, light_.y_px}); }
@@ -249,11 +275,15 @@ std::vector<Source> judge_without_stars(const Candidate& candidate) {
   return listed(candidate.significant_source(line, min_streak_snr(line.length_px)));
 }
 
+bool are_long(const Trail& stars, const Scene& scene) {
+  return stars.length_px >= detection_limits::long_trail_sigmas * scene.sigma_px;
+}
+
 /// Two points that blend, where stars trail and are neither of them.
 std::vector<Source> pair_among_trails(const Scene& scene, const Candidate& candidate,
                                       const TrailFit& as_point, const TrailFit& as_line,
                                       const Trail& star) {
-  if (star.length_px < detection_limits::long_trail_sigmas * scene.sigma_px) return {};
+  if (!are_long(star, scene)) return {};
   const auto two = candidate.as_two_points(as_point, as_line);
   if (!two || two->fit.deviance > candidate.deviance_as_two_stars(star, pair_model_error) -
                                       detection_limits::blend_margin)
@@ -264,8 +294,15 @@ std::vector<Source> pair_among_trails(const Scene& scene, const Candidate& candi
   return pair;
 }
 
+/// Sources that are no stars; if there are none, what explains the light better than a star, though
+/// not to its noise.
+struct AmongStars {
+  std::vector<Source> sources;
+  std::optional<Trail> unexplained;
+};
+
 /// The judgement by the shape of stars.
-std::vector<Source> judge_among_stars(const Scene& scene, const Candidate& candidate) {
+AmongStars judge_among_stars(const Scene& scene, const Candidate& candidate) {
   const Trail& light = candidate.light();
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
@@ -287,21 +324,26 @@ std::vector<Source> judge_among_stars(const Scene& scene, const Candidate& candi
   const TrailFit as_line = candidate.as_line();
   if (stars_trail)
     if (auto pair = pair_among_trails(scene, candidate, as_point, as_line, star); !pair.empty())
-      return pair;
+      return {.sources = std::move(pair)};
   if (may_be_point && as_point.good(5.0) &&
       as_point.deviance < as_line.deviance + detection_limits::blend_margin) {
     auto source = candidate.bright_source(as_point.trails[0], false);
     // A star cut by the frame's edge looks like a point.
     if (source && !source->at_edge && point_beats_star(scene, *source) &&
         !is_of_overlapping_trails(scene, *source))
-      return listed(std::move(source));
+      return {.sources = listed(std::move(source))};
     return {};
   }
-  if (!candidate.is_line(as_line) ||
+  // With the error of a PSF a point is no different from a short trail.
+  if (may_be_point && are_long(star, scene) &&
+      as_point.deviance < as_line.deviance + detection_limits::blend_margin)
+    return {.unexplained = as_point.trails[0]};
+  if (!candidate.may_be_line(as_line) ||
       as_line.deviance > as_star.deviance - 2 * detection_limits::blend_margin ||
       as_line.deviance > candidate.deviance_as_two_stars(star, candidate.model_error()) -
                              detection_limits::blend_margin)
     return {};
+  if (!candidate.is_line(as_line)) return {.unexplained = as_line.trails[0]};
   auto source = candidate.bright_source(as_line.trails[0], true);
   // A star cut by the frame's edge looks like a short line, too.
   if (!source || (source->at_edge && source->trail().length_px < star.length_px)) return {};
@@ -311,7 +353,7 @@ std::vector<Source> judge_among_stars(const Scene& scene, const Candidate& candi
   if (moves_like_star(scene, *source, star, tolerance_px) || is_wide_body(scene, *source) ||
       !beats_stars(scene, *source) || is_of_overlapping_trails(scene, *source))
     return {};
-  return listed(std::move(source));
+  return {.sources = listed(std::move(source))};
 }
 
 }  // namespace
@@ -322,9 +364,12 @@ CompactJudgement judge_compact(const Scene& scene, const Component& component) {
   const Trail& light = candidate.light();
   if (scene.would_be_known(light.x_px, light.y_px, light.flux_e))
     return {.sources = judge_without_stars(candidate)};
-  auto sources = judge_among_stars(scene, candidate);
-  const bool star_like = sources.empty();
-  return {std::move(sources), star_like};
+  AmongStars found = judge_among_stars(scene, candidate);
+  if (found.unexplained)
+    if (const auto alone = candidate.without_others(*found.unexplained))
+      found = judge_among_stars(scene, *alone);
+  const bool star_like = found.sources.empty();
+  return {std::move(found.sources), star_like};
 }
 
 }  // namespace dmise

@@ -110,6 +110,12 @@ double min_gain_of(const Source& other, const Source& than) {
   return snr * snr - 3 * 2 * snr;
 }
 
+/// Whether the middle of one of two fits lies on the other: else they are of different light.
+bool are_of_one(const Scene& scene, const Trail& a, const Trail& b) {
+  const double margin_px = 3 * scene.sigma_px + 1.5;
+  return Around(a, margin_px).has(b.x_px, b.y_px) || Around(b, margin_px).has(a.x_px, a.y_px);
+}
+
 /// Whether a new fit lies on one of other streaks that the old one does not lie on. What is shorter
 /// than half of it may be a piece of it.
 bool reaches_another(const Scene& scene, const Source& now, const Source& before,
@@ -149,7 +155,8 @@ std::optional<Source> refitted(const Scene& scene, const Source& source,
     const Line line = line_of(t);
     if (dark_gap(scene, line, extent_of(line, t.length_px / 2), t.flux_e / t.length_px))
       continue;  // behind it is another one
-    if (reaches_another(scene, *other, source, others)) continue;
+    if (!are_of_one(scene, t, source.trail()) || reaches_another(scene, *other, source, others))
+      continue;
     const double gain = gain_over(scene, *other, source);
     if (!(gain > std::max(most, min_gain_of(*other, source)))) continue;
     most = gain;
