@@ -22,7 +22,7 @@ constexpr std::size_t min_for_affine = 12;
 constexpr double min_over_chance = 1.2;
 constexpr double outlier_scatters = 3.5, min_reach_px = 0.3;
 constexpr double max_outlier_chi2 = 14.0;  // 2 degrees of freedom: 1 in 1000 by chance
-constexpr double star_error_px = 0.02;     // of any star, by its shape and that of pixels
+constexpr double star_error_px = 0.02;     // in the place of a star, by the shape of pixels
 
 struct Pair {
   PixelPosition from, to;
@@ -148,15 +148,27 @@ double scatter_px(const LinearMap& map, const std::vector<Pair>& pairs) {
   return off.empty() ? 0.0 : median_of(off) / 1.1774;  // a Rayleigh distribution has this median
 }
 
-/// Without pairs that are farther apart than their errors and the scatter of others allow.
-std::vector<Pair> without_outliers(const LinearMap& map, const std::vector<Pair>& pairs) {
-  constexpr double median_chi2 = 1.386;  // of two degrees of freedom
-  std::vector<double> chi2;
+std::vector<double> chi2_of(const LinearMap& map, const std::vector<Pair>& pairs) {
+  std::vector<double> out;
   for (const Pair& pair : pairs) {
     const PixelPosition off = pair.to - map(pair.from);
-    chi2.push_back(mahalanobis2(pair.covariance_px2, off.x_px, off.y_px));
+    out.push_back(mahalanobis2(pair.covariance_px2, off.x_px, off.y_px));
   }
-  const double most = max_outlier_chi2 * std::max(median_of(chi2) / median_chi2, 1.0);
+  return out;
+}
+
+/// Squares of ways over those that errors of stars explain; few stars tell little.
+double misfit_of(const std::vector<double>& chi2) {
+  constexpr double median_chi2 = 1.386;  // with two degrees of freedom
+  if (chi2.size() < min_for_affine) return 1.0;
+  const auto n = double(chi2.size());
+  return median_of(chi2) / median_chi2 * n / (n - 3);  // a map has three unknowns in x and y each
+}
+
+/// Without pairs that are farther apart than their errors and the scatter of others allow.
+std::vector<Pair> without_outliers(const LinearMap& map, const std::vector<Pair>& pairs) {
+  const std::vector<double> chi2 = chi2_of(map, pairs);
+  const double most = max_outlier_chi2 * std::max(misfit_of(chi2), 1.0);
   std::vector<Pair> kept;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (chi2[i] < most) kept.push_back(pairs[i]);
@@ -195,6 +207,7 @@ StarMatch match_stars(const std::vector<PixelPosition>& expected, const Filtered
     match.pairs = without_outliers(match.map.map, match.pairs);
     match.map = fitted(match.pairs);
   }
+  match.map.misfit = misfit_of(chi2_of(match.map.map, match.pairs));
   return match;
 }
 
@@ -266,7 +279,7 @@ Symmetric2 Registration::error_px2(std::size_t frame, PixelPosition reference) c
     const SmallVector spread = solve(stars.factor, b, stars.parameters);
     double sum = 0.0;
     for (std::size_t i = 0; i < stars.parameters; ++i) sum += a[i] * spread[i];
-    return sum;
+    return sum * stars.misfit;
   };
   return {product(by[0], by[0]), product(by[0], by[1]), product(by[1], by[1])};
 }

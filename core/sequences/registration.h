@@ -29,6 +29,7 @@ struct RegisteredMap {
   LinearMap map;
   std::size_t parameters = 0;  // that were fitted: both shifts, then the matrix
   SmallMatrix factor{};        // Cholesky's, of their information
+  double misfit = 1.0;         // squares of ways over those by the errors of stars
 };
 
 /// Where the sky of a pixel of the reference frame is in the other frames, and back, by the frames'

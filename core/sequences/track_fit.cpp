@@ -270,7 +270,8 @@ void measure(const MovingLight& light, const FrameView& view, double sigma_px, T
   const Symmetric2 noise = slope_noise(view, point.snr, sigma_px);
   // The inverse is symmetric: inverse * noise * inverse, over the square of the SNR.
   point.covariance_px2 = turned(noise, {inverse[0], inverse[1], inverse[1], inverse[2]});
-  for (double& v : point.covariance_px2) v /= point.snr * point.snr;
+  const double snr2 = point.snr * point.snr;
+  for (double& v : point.covariance_px2) v *= (1 + neglected_orders / snr2) / snr2;
 }
 
 bool is_in(const FilteredSequence& sequence, PixelPosition p) {
