@@ -33,16 +33,16 @@ double sigma_of(const OrbitEstimate& estimate) {
 
 std::array<double, 3> numbers_of(const Vec<Rtn>& v) { return {v.x, v.y, v.z}; }
 
-std::optional<KeptManoeuvre> described(const std::optional<FoundManoeuvre>& found) {
-  if (!found) return std::nullopt;
-  KeptManoeuvre out{.time = found->change.time,
-                    .time_sigma_s = found->time_sigma_s,
-                    .delta_v_m_per_s = numbers_of(found->change.delta_v_m_per_s),
-                    .covariance = lower_triangle<3>(found->covariance),
+KeptManoeuvre described(const FoundManoeuvre& found) {
+  KeptManoeuvre out{.time = found.change.time,
+                    .time_sigma_s = found.time_sigma_s,
+                    .delta_v_m_per_s = numbers_of(found.change.delta_v_m_per_s),
+                    .covariance = lower_triangle<3>(found.covariance),
                     .modes = {},
-                    .found = found->found,
-                    .confidence = found->confidence};
-  for (const ManoeuvreMode& m : found->modes)
+                    .found = found.found,
+                    .confidence = found.confidence};
+  if (found.modes.size() < 2) return out;
+  for (const ManoeuvreMode& m : found.modes)
     out.modes.push_back({.time = m.change.time,
                          .time_sigma_s = m.time_sigma_s,
                          .delta_v_m_per_s = numbers_of(m.change.delta_v_m_per_s),
@@ -146,20 +146,25 @@ Outcome<KeptOrbit> KeptOrbits::take(std::size_t object, const OrbitEstimate& pri
   ++kept.arcs;
   kept.last = *now;
   kept.ahead.reset();
-  return KeptOrbit{.time = now->state.time,
-                   .position_m = now->state.position_m,
-                   .velocity_m_per_s = now->state.velocity_m_per_s,
-                   .covariance = lower_triangle<6>(now->covariance),
-                   .drag_m2_per_kg = now->state.drag_m2_per_kg,
-                   .drag_sigma_m2_per_kg = std::sqrt(now->covariance(drag_row, drag_row)),
-                   .srp_m2_per_kg = now->state.srp_m2_per_kg,
-                   .srp_sigma_m2_per_kg = std::sqrt(now->covariance(srp_row, srp_row)),
-                   .arcs = kept.arcs,
-                   .detections = std::uint32_t(arc.size()),
-                   .outliers = std::uint32_t(news->outliers),
-                   .innovation_d2 = std::max(0.0, news->innovation_d2),
-                   .degrees = std::uint32_t(news->degrees),
-                   .manoeuvre = described(news->manoeuvre)};
+  KeptOrbit out{.time = now->state.time,
+                .position_m = now->state.position_m,
+                .velocity_m_per_s = now->state.velocity_m_per_s,
+                .covariance = lower_triangle<6>(now->covariance),
+                .drag_m2_per_kg = now->state.drag_m2_per_kg,
+                .drag_sigma_m2_per_kg = std::sqrt(now->covariance(drag_row, drag_row)),
+                .srp_m2_per_kg = now->state.srp_m2_per_kg,
+                .srp_sigma_m2_per_kg = std::sqrt(now->covariance(srp_row, srp_row)),
+                .arcs = kept.arcs,
+                .detections = std::uint32_t(arc.size()),
+                .outliers = std::uint32_t(news->outliers),
+                .innovation_d2 = std::max(0.0, news->innovation_d2),
+                .degrees = std::uint32_t(news->degrees),
+                .manoeuvre = {},
+                .revised = {}};
+  if (news->manoeuvre) out.manoeuvre = described(*news->manoeuvre);
+  for (const FoundManoeuvre& m : kept.object.open_manoeuvres())
+    if (!news->manoeuvre || m.found != news->manoeuvre->found) out.revised.push_back(described(m));
+  return out;
 }
 
 std::optional<std::size_t> KeptOrbits::owner_of(const OrbitState& seen,

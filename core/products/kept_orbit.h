@@ -31,7 +31,7 @@ struct KeptManoeuvre {
   // of its covariance by rows [m^2/s^2].
   std::array<double, 3> delta_v_m_per_s{};
   std::array<double, 6> covariance{};
-  std::vector<KeptManoeuvreMode> modes;  // by falling chance
+  std::vector<KeptManoeuvreMode> modes;  // by falling chance; none where there is one
   SimTime found;                         // the detection by which it was found
   double confidence = 0.0;               // probability that noise would not have shown it, [0, 1]
 
@@ -59,6 +59,7 @@ struct KeptOrbit {
   double innovation_d2 = 0.0;
   std::uint32_t degrees = 0;
   std::optional<KeptManoeuvre> manoeuvre;  // found by this arc
+  std::vector<KeptManoeuvre> revised;      // earlier ones, as this arc has them
 
   bool operator==(const KeptOrbit&) const = default;
 };
@@ -80,7 +81,7 @@ void visit_fields(V& v, M& m) {
   v("covariance", m.covariance, "covariance_rtn");
   v("found", m.found);
   v("confidence", m.confidence);
-  v.absent_unless(m.modes.size() > 1, "modes", m.modes);
+  v.absent_unless(!m.modes.empty(), "modes", m.modes);
 }
 
 template <class V, MaybeConst<KeptOrbit> K>
@@ -104,6 +105,7 @@ void visit_fields(V& v, K& k) {
   v("innovation_d2", k.innovation_d2);
   v("degrees", k.degrees);
   v("manoeuvre", k.manoeuvre);
+  v.absent_unless(!k.revised.empty(), "revised", k.revised);
 }
 
 }  // namespace dmise

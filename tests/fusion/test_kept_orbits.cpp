@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/fusion/fusion.h"
 #include "core/orbit/two_body.h"
+#include "core/products/product_json.h"
 #include "core/time/iso8601.h"
 #include "core/tracking/mean_elements_fit.h"
 #include "tests/support/watched_orbit.h"
@@ -117,10 +118,13 @@ TEST(KeptOrbits, AnOrbitOfADayIsBetterThanItsElements) {
 TEST(KeptOrbits, AManoeuvreIsFoundWithItsTimeAndSize) {
   const double at_h = 20.0, size_m_per_s = 0.5;
   const Story story(1.6, {{sim_seconds(at_h * hour_s), {0, size_m_per_s, 0}}}, 2);
-  std::optional<KeptManoeuvre> found;
+  std::optional<KeptManoeuvre> found, revised;
   std::size_t manoeuvres = 0;
   for (const KeptOrbit& orbit : story.kept(story.elements())) {
     EXPECT_EQ(orbit.object, "7");
+    const std::string line = to_json(orbit, [](SimTime) { return std::string("now"); });
+    EXPECT_EQ(kept_orbit_of(JsonRecord(line, "test:1")), orbit);
+    if (!orbit.revised.empty()) revised = orbit.revised.back();
     if (!orbit.manoeuvre) continue;
     ++manoeuvres;
     found = orbit.manoeuvre;
@@ -131,6 +135,12 @@ TEST(KeptOrbits, AManoeuvreIsFoundWithItsTimeAndSize) {
   EXPECT_LT(std::fabs((found->time - sim_seconds(at_h * hour_s)).seconds()),
             4 * found->time_sigma_s);
   EXPECT_GT(found->confidence, 0.99);
+  // Later arcs tell more of it.
+  ASSERT_TRUE(revised);
+  EXPECT_EQ(revised->found, found->found);
+  EXPECT_LT(revised->time_sigma_s, found->time_sigma_s);
+  EXPECT_LT(std::fabs((revised->time - sim_seconds(at_h * hour_s)).seconds()),
+            4 * revised->time_sigma_s);
 }
 
 TEST(KeptOrbits, WhatIsInNoCatalogueIsOneObjectFromPassToPass) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/tracking/maintenance/manoeuvre_modes.h"
@@ -44,6 +45,10 @@ class CatalogueObject {
   /// All manoeuvres so far, by the time at which they were found. The latest are estimated anew by
   /// each arc.
   const std::vector<FoundManoeuvre>& manoeuvres() const { return manoeuvres_; }
+  /// Those that the last arc has estimated.
+  std::span<const FoundManoeuvre> open_manoeuvres() const {
+    return std::span(manoeuvres_).subspan(first_fitted_);
+  }
 
  private:
   bool is_settled() const;
