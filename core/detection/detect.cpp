@@ -147,11 +147,6 @@ std::vector<Component> components_of(const Scene& scene, FilteredFrame& filtered
                          &filtered);
 }
 
-/// Sources for each pixel.
-double density_of(const std::vector<Component>& components, const CountImage& counts) {
-  return double(components.size() + 1) / double(counts.pixels.size());
-}
-
 /// What a search has found, and the sources of its detections.
 struct Found {
   DetectionResult result;
@@ -252,7 +247,6 @@ bool detect_among_trails(Scene& with_stars, const FrameHeader& header,
   scene.use(with_stars.psf);
   FilteredFrame filtered(frame.counts.columns, frame.counts.rows, scene.sigma_px);
   const auto components = components_of(scene, filtered, threads);
-  scene.sources_per_px2 = density_of(components, frame.counts);
   if (scene.unusable) hide(filtered, *scene.unusable);
   hide(filtered, frame.lit);
   std::vector<Trail> subtracted;
@@ -274,7 +268,7 @@ Found found_by(const FrameHeader& header, const CountImage& counts, const PixelM
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = components_of(scene, filtered, threads);
   scene.use(measure_psf(scene, components));
-  scene.sources_per_px2 = density_of(components, counts);
+  scene.sources_per_px2 = double(components.size() + 1) / double(counts.pixels.size());
   if (scene.unusable) hide(filtered, *scene.unusable);
   Found found;
   std::optional<KnownStars> known;
