@@ -109,8 +109,9 @@ TEST(BreakupConfig, SaysWhereAndWhy) {
   EXPECT_EQ(of(blast + ", size: 1"), "s.yaml:2:" + std::to_string(14 + blast.size() + 2) +
                                          ": objects[0].breakup.size: unknown key");
   const std::string one = "- {breakup: {" + blast + "}}\n";
-  EXPECT_EQ(complaint_of_broken(one + one),
-            "s.yaml:3:3: objects[1]: another constellation, breakup or population has the name breakup");
+  EXPECT_EQ(
+      complaint_of_broken(one + one),
+      "s.yaml:3:3: objects[1]: another constellation, breakup or population has the name breakup");
 }
 
 TEST(BreakupConfig, EveryChangeShowsInThePhysicsDigest) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dmise {
 namespace {
@@ -159,7 +160,7 @@ void CatalogueObject::slide() {
   auto fit = ArcFit::make(*forces_, prior, std::move(kept), open);
   if (!fit) return;
   fit->iterate();
-  prior_ = prior;
+  prior_ = std::move(prior);
   after_.erase(after_.begin(), later);
   fit_ = std::move(*fit);
   first_fitted_ += given_up;
