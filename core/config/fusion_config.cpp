@@ -102,8 +102,7 @@ const Section& fusion_section() {
            "keep_orbits", form::flag(),
            "Keep the orbits of objects from arc to arc of their detections by numerical forces, "
            "find manoeuvres and breakups, and write `orbits.jsonl` and `breakups.jsonl`. Runs of "
-           "at "
-           "most 18 days.")),
+           "at most 18 days.")),
        bound<&FusionConfig::cue_delay_ticks>(
            "cue_delay_ticks", form::integer(1, 100000),
            "Ticks between the decision for a task and its beginning."),

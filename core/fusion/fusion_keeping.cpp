@@ -128,7 +128,7 @@ std::optional<FoundBreakup> Fusion::breakup_of(std::size_t object) {
 }
 
 void Fusion::name_parent(const PinchPoint& point, FoundBreakup& breakup) {
-  catalogue_.move(point.time);
+  catalogue_.move(point.time);  // the next scene moves it to its own
   const double sigma_m = std::sqrt(point.covariance.trace());
   double nearest = parent_gate_d2;
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {

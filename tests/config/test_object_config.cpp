@@ -167,6 +167,9 @@ TEST(ObjectConfig, LightOfAReentryIsByHeight) {
       "s.yaml:2:82: objects[0].reentry.height_m[1]: must be above the one before, got 9.0e+4");
   EXPECT_EQ(complaint(object + "{height_m: [5.0e+4, 9.0e+4], magnitude: [-3, 2, 1]}}"),
             "s.yaml:2:102: objects[0].reentry.magnitude: must have one for each height");
+  for (const std::string few : {"[]", "[5.0e+4]"})
+    EXPECT_EQ(complaint(object + "{height_m: " + few + ", magnitude: " + few + "}}"),
+              "s.yaml:2:73: objects[0].reentry.height_m: must have two heights or more");
 }
 
 TEST(ObjectConfig, SaysWhereAndWhy) {

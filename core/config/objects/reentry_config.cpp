@@ -23,11 +23,13 @@ ReentryLight read_reentry(const YamlValue& value) {
   YamlMap map(value, reentry_section());
   ReentryLight light;
   read_bound(map, light);
-  for (const YamlValue& height : map.require("height_m").list()) {
+  const YamlValue heights = map.require("height_m");
+  for (const YamlValue& height : heights.list()) {
     if (!light.height_m.empty() && !(height.number() > light.height_m.back()))
       height.fail("must be above the one before");
     light.height_m.push_back(height.number());
   }
+  if (light.height_m.size() < 2) heights.fail("must have two heights or more", false);
   const YamlValue magnitudes = map.require("magnitude");
   for (const YamlValue& magnitude : magnitudes.list()) light.v_mag.push_back(magnitude.number());
   if (light.v_mag.size() != light.height_m.size())

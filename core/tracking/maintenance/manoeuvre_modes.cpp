@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/numeric/golden_section.h"
+
 namespace dmise {
 namespace {
 
 constexpr double coarse_s = 600.0;  // an orbit near the Earth has its peaks half a turn apart
-constexpr int refinements = 10;     // golden sections of two coarse steps: to 10 s
+constexpr double refined_s = 10.0;  // to which a peak is found
 constexpr std::size_t max_modes = 24;
 constexpr double min_chance = 1e-3;
 // Fall of the logarithm of a peak's evidence, below which no fit is tried: absolute, and a share of
@@ -32,23 +34,10 @@ struct Peak {
 };
 
 ManoeuvreCandidate refined(const ManoeuvreScan& scan, SimTime from, SimTime to) {
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  const auto between = [&](double share) {
-    return scan.at(from + sim_seconds(share * (to - from).seconds()));
-  };
-  ManoeuvreCandidate left = between(1 - golden), right = between(golden);
-  for (int i = 0; i < refinements; ++i) {
-    if (left.log_evidence > right.log_evidence) {
-      to = right.change.time;
-      right = left;
-      left = between(1 - golden);
-    } else {
-      from = left.change.time;
-      left = right;
-      right = between(golden);
-    }
-  }
-  return left.log_evidence > right.log_evidence ? left : right;
+  const auto at = [&](double after_s) { return scan.at(from + sim_seconds(after_s)); };
+  const Least least = golden_section([&](double after_s) { return -at(after_s).log_evidence; }, 0.0,
+                                     (to - from).seconds(), refined_s);
+  return at(least.at);
 }
 
 std::vector<Peak> peaks_of(const ManoeuvreScan& scan,
@@ -68,6 +57,7 @@ std::vector<Peak> peaks_of(const ManoeuvreScan& scan,
     out.push_back(
         {refined(scan, left, right), coarse[valley].change.time, coarse[next].change.time});
   }
+  if (out.empty()) return out;  // no evidence is a number
   std::ranges::sort(
       out, [](const Peak& a, const Peak& b) { return a.best.log_evidence > b.best.log_evidence; });
   const double least =
